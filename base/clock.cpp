@@ -26,12 +26,20 @@ Duration seconds(double value) {
   return Duration(static_cast<std::int64_t>(value * 1e9));
 }
 
-Instant SystemClock::now() const { return Instant(read_clock(CLOCK_BOOTTIME)); }
-UtcTime SystemClock::utc_now() const { return UtcTime(read_clock(CLOCK_REALTIME)); }
+Instant SystemClock::now() const {
+  return Instant(read_clock(CLOCK_BOOTTIME));
+}
+UtcTime SystemClock::utc_now() const {
+  return UtcTime(read_clock(CLOCK_REALTIME));
+}
 
 ManualClock::ManualClock() : boot_ns_(kManualStart.count()) {}
-Instant ManualClock::now() const { return Instant(Duration(boot_ns_.load())); }
-UtcTime ManualClock::utc_now() const { return UtcTime(kManualDay) + (now().time_since_epoch() - kManualStart); }
+Instant ManualClock::now() const {
+  return Instant(Duration(boot_ns_.load()));
+}
+UtcTime ManualClock::utc_now() const {
+  return UtcTime(kManualDay) + (now().time_since_epoch() - kManualStart);
+}
 
 void ManualClock::advance_to(Instant t) {
   const std::int64_t wanted = t.time_since_epoch().count();

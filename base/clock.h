@@ -20,7 +20,9 @@ struct BootTime {
 using Instant = BootTime::time_point;
 using UtcTime = std::chrono::sys_time<Duration>;
 
-[[nodiscard]] constexpr double in_seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
+[[nodiscard]] constexpr double in_seconds(Duration d) {
+  return std::chrono::duration<double>(d).count();
+}
 /// Saturates instead of overflowing; `value` must not be NaN.
 [[nodiscard]] Duration seconds(double value);
 

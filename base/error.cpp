@@ -134,9 +134,13 @@ std::string location_text(const InputLocation& where) {
 
 }  // namespace
 
-const ErrorTraits& traits(ErrorCode code) { return kTable.at(static_cast<std::size_t>(code)); }
+const ErrorTraits& traits(ErrorCode code) {
+  return kTable.at(static_cast<std::size_t>(code));
+}
 
-std::span<const ErrorTraits> all_error_traits() { return kTable; }
+std::span<const ErrorTraits> all_error_traits() {
+  return kTable;
+}
 
 std::optional<ErrorCode> error_code_from_name(std::string_view name) {
   const auto row = std::ranges::find(kTable, name, &ErrorTraits::name);

@@ -9,8 +9,9 @@
 
 namespace gonio {
 
-/// Every way in which something can fail, as one closed list. A code is never renamed and never used for something else:
-/// it stands in databases, in API answers and in operators' notes. What each means is in the table behind `traits`.
+/// Every way in which something can fail, as one closed list. A code is never renamed and never used for something
+/// else: it stands in databases, in API answers and in operators' notes. What each means is in the table behind
+/// `traits`.
 enum class ErrorCode : std::uint8_t {
   // input
   InvalidInput,
@@ -69,13 +70,13 @@ enum class Retry : std::uint8_t { Never, Again, AfterOperator };
 /// What a code means, wherever it is shown: one row serves problem+json, the CLI, the operator's docs and scan policy.
 struct ErrorTraits {
   ErrorCode code;
-  std::string_view name;    ///< stable, kebab-case: "out-of-limits"
+  std::string_view name;  ///< stable, kebab-case: "out-of-limits"
   int http_status;
-  int exit_code;            ///< of gonioctl: 1 failed, 2 usage, 3 no daemon, 4 not authorised, 5 held, 6 limit, 7 timeout
+  int exit_code;  ///< of gonioctl: 1 failed, 2 usage, 3 no daemon, 4 not authorised, 5 held, 6 limit, 7 timeout
   Retry retry;
-  std::string_view title;   ///< a few words for people
+  std::string_view title;         ///< a few words for people
   std::string_view for_the_data;  ///< what it means for what was measured
-  std::string_view remedy;  ///< what to do
+  std::string_view remedy;        ///< what to do
 };
 
 [[nodiscard]] const ErrorTraits& traits(ErrorCode code);

@@ -11,13 +11,15 @@ namespace gonio {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> failure(Error error) { return tl::unexpected<Error>(std::move(error)); }
+[[nodiscard]] inline tl::unexpected<Error> failure(Error error) {
+  return tl::unexpected<Error>(std::move(error));
+}
 
 }  // namespace gonio
 
 /// Leaves the function with the error of a Result expression; does nothing when it holds a value.
-#define GONIO_TRY(expression)                                              \
-  do {                                                                     \
-    auto gonio_try_result = (expression);                                  \
+#define GONIO_TRY(expression)                                                            \
+  do {                                                                                   \
+    auto gonio_try_result = (expression);                                                \
     if (!gonio_try_result) return ::gonio::failure(std::move(gonio_try_result).error()); \
   } while (false)

@@ -52,8 +52,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_name(std::string_view key, const std::set<std::string, std::less<>>& known) {
-  const auto nearest = std::ranges::min_element(
-      known, {}, [&](const std::string& name) { return edit_distance(key, name); });
+  const auto nearest =
+      std::ranges::min_element(known, {}, [&](const std::string& name) { return edit_distance(key, name); });
   if (nearest == known.end()) return {};
   return edit_distance(key, *nearest) <= std::max<std::size_t>(3, key.size() / 2) ? *nearest : std::string();
 }
@@ -65,7 +65,9 @@ std::string range_text(const NumberRange& range) {
   return fmt::format("{} to {}{}", range.least, range.most, unit);
 }
 
-int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+int line_of(const toml::node& node) {
+  return static_cast<int>(node.source().begin.line);
+}
 
 // The first key, in the order of the text, that nobody asked for.
 struct Stray {
@@ -344,7 +346,9 @@ InputLocation TomlReader::location(std::string_view key) const {
   return where;
 }
 
-const std::string& TomlReader::file() const { return document_->file; }
+const std::string& TomlReader::file() const {
+  return document_->file;
+}
 
 void TomlReader::fail(std::string_view key, ErrorCode code, std::string seen, std::string limit) {
   if (document_->error) return;
@@ -356,7 +360,9 @@ void TomlReader::fail(std::string_view key, ErrorCode code, std::string seen, st
                            .where = location(key)};
 }
 
-bool TomlReader::has_failed() const { return document_->error.has_value(); }
+bool TomlReader::has_failed() const {
+  return document_->error.has_value();
+}
 
 Result<void> TomlReader::finish() const {
   if (document_->error) return failure(*document_->error);
