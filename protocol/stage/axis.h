@@ -17,10 +17,13 @@ inline constexpr std::array<Axis, kAxisCount> kAllAxes{Axis::ThetaI, Axis::Theta
 template <class T>
 using PerAxis = std::array<T, kAxisCount>;
 
-[[nodiscard]] constexpr std::size_t index_of(Axis axis) { return static_cast<std::size_t>(axis); }
+[[nodiscard]] constexpr std::size_t index_of(Axis axis) {
+  return static_cast<std::size_t>(axis);
+}
 /// "theta_i", as in files and messages.
 [[nodiscard]] std::string_view axis_name(Axis axis);
-/// "deg", "mm" or "slot": the unit of every position, speed (per s) and tolerance of this axis at the edge of the program.
+/// "deg", "mm" or "slot": the unit of every position, speed (per s) and tolerance of this axis at the edge of the
+/// program.
 [[nodiscard]] std::string_view axis_unit(Axis axis);
 [[nodiscard]] std::optional<Axis> axis_from_name(std::string_view name);
 

@@ -76,9 +76,9 @@ struct RegisterMap {
   std::uint8_t unit_id = 1;
   std::array<Register, kFieldCount> fields{};
   PerAxis<std::array<Register, kAxisFieldCount>> axes{};
-  PerAxis<double> axis_scale{};         ///< deg, mm or slots per count; may be negative
-  double monitor_scale = 1.0;           ///< monitor units per count
-  double temperature_scale_c = 0.01;    ///< deg C per count
+  PerAxis<double> axis_scale{};       ///< deg, mm or slots per count; may be negative
+  double monitor_scale = 1.0;         ///< monitor units per count
+  double temperature_scale_c = 0.01;  ///< deg C per count
   double humidity_scale_percent = 0.01;
   friend bool operator==(const RegisterMap&, const RegisterMap&) = default;
 
@@ -105,14 +105,27 @@ inline constexpr std::uint16_t kCommandHome = 2;
 enum class StatusBit : std::uint8_t { Moving, Homed, Halted, HeartbeatTripped, Fault, InterlockOpen };
 /// Bits of an axis' status.
 enum class AxisBit : std::uint8_t { Moving, Homed, AtLowLimit, AtHighLimit };
-[[nodiscard]] constexpr std::uint16_t bit(StatusBit b) { return static_cast<std::uint16_t>(1U << static_cast<unsigned>(b)); }
-[[nodiscard]] constexpr std::uint16_t bit(AxisBit b) { return static_cast<std::uint16_t>(1U << static_cast<unsigned>(b)); }
+[[nodiscard]] constexpr std::uint16_t bit(StatusBit b) {
+  return static_cast<std::uint16_t>(1U << static_cast<unsigned>(b));
+}
+[[nodiscard]] constexpr std::uint16_t bit(AxisBit b) {
+  return static_cast<std::uint16_t>(1U << static_cast<unsigned>(b));
+}
 
 enum class ShutterState : std::uint8_t { Closed, Open, Moving };
 
 /// Why the stage refused a motion command.
 enum class Refusal : std::uint8_t {
-  None, EpochTooOld, Halted, HeartbeatTripped, NotHomed, BeyondLimit, Fault, InterlockOpen, AlreadyMoving, BadCommand
+  None,
+  EpochTooOld,
+  Halted,
+  HeartbeatTripped,
+  NotHomed,
+  BeyondLimit,
+  Fault,
+  InterlockOpen,
+  AlreadyMoving,
+  BadCommand
 };
 [[nodiscard]] std::string_view refusal_name(Refusal refusal);
 
@@ -123,8 +136,8 @@ enum class Refusal : std::uint8_t {
 [[nodiscard]] std::string_view field_name(Field field);
 [[nodiscard]] std::string_view field_name(AxisField field);
 
-/// Reads the table [stage.registers] of instrument.toml. Errors stick in `table`: unknown or missing registers, two fields on one
-/// register, a status block of more than 125 registers.
+/// Reads the table [stage.registers] of instrument.toml. Errors stick in `table`: unknown or missing registers, two
+/// fields on one register, a status block of more than 125 registers.
 [[nodiscard]] RegisterMap read_register_map(TomlReader& table);
 /// The same as TOML text, under the heading `[prefix]` ("stage.registers"); read back it is equal.
 [[nodiscard]] std::string to_toml(const RegisterMap& map, std::string_view prefix);
