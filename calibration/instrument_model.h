@@ -6,12 +6,13 @@ namespace gonio::calibration {
 
 /// What calibration knows of the detector: a photon-transfer model (EMVA 1288) and its uncertainties, all k = 1.
 struct DetectorModel {
-  double electrons_per_dn = 1.0;         ///< at 0 dB
-  double read_noise_dn = 0.0;            ///< standard deviation of one pixel of one frame, quantisation included
+  double electrons_per_dn = 1.0;  ///< at 0 dB
+  double read_noise_dn = 0.0;     ///< standard deviation of one pixel of one frame, quantisation included
   double full_scale_dn = 4095.0;
   Measured<double> exposure_offset_s{};  ///< t0: the light falls for exposure + t0
   double u_linearity = 0.0;              ///< relative, over the full range; shared by the scan
-  double u_dark_drift_dn_per_s = 0.0;    ///< of exposure: what interpolation between darks may miss; shared within a dark block
+  double u_dark_drift_dn_per_s =
+      0.0;  ///< of exposure: what interpolation between darks may miss; shared within a dark block
 };
 
 /// Standard uncertainties (k = 1) of the directions, shared by the scan (zeros of the arms) and from move to move.
@@ -19,12 +20,12 @@ struct AngleModel {
   Angle u_zero_theta_i;
   Angle u_zero_theta_r;
   Angle u_zero_phi_r;
-  Angle u_repeat;      ///< random, each axis, each move
+  Angle u_repeat;  ///< random, each axis, each move
 };
 
 /// What is left of the lamp and the placing after the monitor; relative, k = 1.
 struct LampModel {
-  double u_after_monitor = 0.0;    ///< between two readings `correlation_s` or more apart
+  double u_after_monitor = 0.0;  ///< between two readings `correlation_s` or more apart
   double correlation_s = 3600.0;
   double u_reproducibility = 0.0;  ///< random per reading: placing, fine structure of the surface
 };
