@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cassert>
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,17 +27,18 @@ using Parameters = std::vector<NamedNumber>;
 
 /// Where a BRDF is hard to integrate. It chooses the quadrature and changes no value.
 enum class Feature : std::uint8_t {
-  Smooth,    ///< nothing but the horizon
-  HotSpot,   ///< a kink at retro-reflection
-  Lobe,      ///< a peak about the mirror direction, narrower than a radian
+  Smooth,   ///< nothing but the horizon
+  HotSpot,  ///< a kink at retro-reflection
+  Lobe,     ///< a peak about the mirror direction, narrower than a radian
 };
 
-/// What every surface can do: one BRDF, split in a smooth part that `eval` gives and a mirror part that it never contains.
+/// What every surface can do: one BRDF, split in a smooth part that `eval` gives and a mirror part that it never
+/// contains.
 ///   eval(i, r)       the smooth part of f_r, finite for every pair of directions, horizon included; the same bits for
 ///                    (i, r) and (r, i) when the surface is reciprocal (Mobley 2005 eq 4)
 ///   model()          the name that `make_surface` knows it by
 ///   parameters()     in the order of `make_surface`'s table
-///   is_isotropic()   whether only phi_r - phi_i counts
+///   is_isotropic()   whether only the size of phi_r - phi_i counts: neither a turn nor a mirror image changes it
 /// and where it applies
 ///   rho_dh(i)        the smooth part's directional-hemispherical reflectance, where it has a closed form
 ///   specular(i)      the share of the light from i that leaves in mirrored(i) exactly, a delta in the BRDF (eq 9)
@@ -55,14 +59,12 @@ struct SurfaceTerm;
 class Surface {
  public:
   template <class M>
-    requires(!std::same_as<M, Surface> && SurfaceModel<M>)
-  Surface(M model) : model_(std::make_shared<const Holder<M>>(std::move(model))) {}  // NOLINT: a model is a surface
+  requires(!std::same_as<M, Surface> && SurfaceModel<M>) Surface(M model)
+      : model_(std::make_shared<const Holder<M>>(std::move(model))) {}  // NOLINT: a model is a surface
 
   /// The smooth part of the BRDF; a mirror part is told by `specular` alone.
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const { return model_->eval(i, r); }
-  [[nodiscard]] Brdf eval(const Geometry& g) const {
-    return eval(incident_direction(g), reflected_direction(g));
-  }
+  [[nodiscard]] Brdf eval(const Geometry& g) const { return eval(incident_direction(g), reflected_direction(g)); }
   /// One incidence, many views: out[k] = eval(i, r[k]), the same bits. The spans have the same length (asserted).
   void eval(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const { model_->eval(i, r, out); }
 
@@ -76,7 +78,7 @@ class Surface {
   [[nodiscard]] bool is_isotropic() const { return model_->is_isotropic(); }
   [[nodiscard]] Feature feature() const { return model_->feature(); }
   /// The surfaces that this one is a weighted sum of; empty when it is no sum.
-  [[nodiscard]] std::span<const SurfaceTerm> terms() const { return model_->terms(); }
+  [[nodiscard]] std::span<const SurfaceTerm> terms() const;
 
   /// The model itself, or null when this is another one.
   template <SurfaceModel M>
@@ -111,6 +113,55 @@ struct SurfaceTerm {
   double weight = 1.0;
 };
 
-}  // namespace gonio::reflectance
+inline std::span<const SurfaceTerm> Surface::terms() const {
+  return model_->terms();
+}
 
-#include "reflectance/surface_holder.h"  // IWYU pragma: keep (the template behind Surface)
+/// How `Surface` holds a model: what the model does not offer gets its neutral answer here.
+template <class M>
+struct Surface::Holder final : Surface::Interface {
+  explicit Holder(M model) : model_value(std::move(model)) {}
+
+  Brdf eval(const Direction& i, const Direction& r) const override { return model_value.eval(i, r); }
+
+  void eval(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const override {
+    assert(r.size() == out.size());
+    for (std::size_t k = 0; k < r.size(); ++k) out[k] = model_value.eval(i, r[k]);
+  }
+
+  std::optional<double> closed_rho_dh(const Direction& i) const override {
+    if constexpr (requires { model_value.rho_dh(i); })
+      return model_value.rho_dh(i);
+    else
+      return std::nullopt;
+  }
+
+  double specular(const Direction& i) const override {
+    if constexpr (requires { model_value.specular(i); })
+      return model_value.specular(i);
+    else
+      return 0.0;
+  }
+
+  std::string_view model() const override { return model_value.model(); }
+  Parameters parameters() const override { return model_value.parameters(); }
+  bool is_isotropic() const override { return model_value.is_isotropic(); }
+
+  Feature feature() const override {
+    if constexpr (requires { model_value.feature(); })
+      return model_value.feature();
+    else
+      return Feature::Smooth;
+  }
+
+  std::span<const SurfaceTerm> terms() const override {
+    if constexpr (requires { model_value.terms(); })
+      return model_value.terms();
+    else
+      return {};
+  }
+
+  M model_value;
+};
+
+}  // namespace gonio::reflectance
