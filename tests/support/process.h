@@ -1,0 +1,74 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gonio::test {
+
+/// A child program with its output in a file. The destructor kills it (SIGKILL) and reaps it.
+class Process {
+ public:
+  /// Throws std::runtime_error when it cannot be started.
+  Process(const std::vector<std::string>& arguments, const std::string& output_file);
+  ~Process();
+  Process(Process&& other) noexcept;
+  Process& operator=(Process&& other) noexcept;
+
+  /// Sends a signal; nothing happens when the program has ended.
+  void signal(int number) const;
+  /// SIGKILL, then reaps.
+  void kill();
+  /// Waits for its end; the exit code (128 + signal when killed by one), or nothing at the deadline.
+  std::optional<int> wait(std::chrono::seconds deadline);
+  [[nodiscard]] bool is_running();
+  [[nodiscard]] pid_t pid() const { return pid_; }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+/// Polls `condition` every few ms until it holds; false at the deadline, which bounds hanging and is never a speed to
+/// be met.
+template <class Condition>
+bool eventually(Condition condition, std::chrono::seconds deadline);
+
+/// A new folder below the temporary folder, removed with all its content at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+[[nodiscard]] std::string text_of(const std::string& file);
+void write_text(const std::string& file, const std::string& text);
+/// The last lines of a file: what a program said, for the message of a failed test.
+[[nodiscard]] std::string tail_of(const std::string& file, std::size_t lines = 40);
+/// A TCP port of 127.0.0.1 that was free a moment ago.
+[[nodiscard]] int free_port();
+
+namespace detail {
+void pause_briefly();
+}
+
+template <class Condition>
+bool eventually(Condition condition, std::chrono::seconds deadline) {
+  const auto end = std::chrono::steady_clock::now() + deadline;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() >= end) return false;
+    detail::pause_briefly();
+  }
+  return true;
+}
+
+}  // namespace gonio::test
