@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "base/geometry.h"
+#include "base/units.h"
+
+namespace gonio::calibration {
+
+/// The angular shape of an isotropic standard on a grid, linear in each of theta_i, theta_r and dphi = |phi_r - phi_i|
+/// folded to [0, 180 deg] (0 towards retro-reflection, 180 deg towards specular). Beyond the last theta its edge holds.
+/// A theta slightly below zero, as encoders give it about the normal, is the same direction with phi turned by 180 deg.
+/// Threads: any.
+class ShapeTable {
+ public:
+  /// Grids ascending with at least two nodes, both thetas from 0, phi from 0 to 180 deg; `values`
+  /// [theta_i][theta_r][phi], phi fastest, all positive, and constant along phi wherever a theta is 0 (asserted: the
+  /// reader has checked it).
+  ShapeTable(std::vector<Angle> theta_i, std::vector<Angle> theta_r, std::vector<Angle> phi,
+             std::vector<double> values);
+
+  [[nodiscard]] double value(const Geometry& g) const;
+
+  [[nodiscard]] const std::vector<Angle>& theta_i() const { return theta_i_; }
+  [[nodiscard]] const std::vector<Angle>& theta_r() const { return theta_r_; }
+  [[nodiscard]] const std::vector<Angle>& phi() const { return phi_; }
+
+ private:
+  std::vector<Angle> theta_i_;
+  std::vector<Angle> theta_r_;
+  std::vector<Angle> phi_;
+  std::vector<double> values_;
+};
+
+}  // namespace gonio::calibration
