@@ -26,11 +26,11 @@ struct DetectorIdentity {
 struct Frame {
   int width = 0;
   int height = 0;
-  int significant_bits = 12;          ///< full scale is 2^bits - 1
+  int significant_bits = 12;  ///< full scale is 2^bits - 1
   std::vector<std::uint16_t> pixels;
-  std::uint64_t frame_id = 0;         ///< the camera's own, grows by one
-  std::uint64_t camera_time_ns = 0;   ///< the camera's own clock
-  ExposureSettings settings;          ///< read back from the camera
+  std::uint64_t frame_id = 0;        ///< the camera's own, grows by one
+  std::uint64_t camera_time_ns = 0;  ///< the camera's own clock
+  ExposureSettings settings;         ///< read back from the camera
   double temperature_c = 0.0;
   Instant arrived{};
 };
@@ -41,14 +41,16 @@ class Detector {
   virtual ~Detector() = default;
 
   /// Opens if it is not open: takes control, writes all settings of the configuration and reads them back.
-  /// Errors: Unreachable, ControlLost (another controller has it: waited out up to a bound), WrongDevice, SettingNotTaken.
+  /// Errors: Unreachable, ControlLost (another controller has it: waited out up to a bound), WrongDevice,
+  /// SettingNotTaken.
   [[nodiscard]] virtual Result<DetectorIdentity> ensure_open() = 0;
   /// Errors: as ensure_open; SettingNotTaken with what was asked and what was read back.
   [[nodiscard]] virtual Result<void> apply(const ExposureSettings& settings) = 0;
   /// Drops frames of earlier triggers, then starts one exposure. Errors: Unreachable, ControlLost, DeviceRefused.
   [[nodiscard]] virtual Result<void> trigger() = 0;
   /// The frame of the last trigger, or nothing yet after `wait` at most. Each trigger's frame is handed out once.
-  /// Errors: IncompleteData, StaleData, ControlLost, Unreachable, TimedOut (the deadline computed at the trigger has passed).
+  /// Errors: IncompleteData, StaleData, ControlLost, Unreachable, TimedOut (the deadline computed at the trigger has
+  /// passed).
   [[nodiscard]] virtual Result<std::optional<Frame>> collect(Duration wait) = 0;
 };
 

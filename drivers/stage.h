@@ -20,8 +20,8 @@ using MotionToken = std::uint16_t;
 using MotionTarget = stage::PerAxis<std::optional<double>>;
 
 struct AxisState {
-  std::int32_t counts = 0;   ///< raw, as on the wire
-  double position = 0.0;     ///< deg, mm or slot
+  std::int32_t counts = 0;  ///< raw, as on the wire
+  double position = 0.0;    ///< deg, mm or slot
   bool moving = false;
   bool homed = false;
   bool at_limit = false;
@@ -65,8 +65,8 @@ struct StageState {
   GateRecord gate{};
 };
 
-/// A goniometer stage: arms, sample azimuth, carriage, filter wheel, shutters, and the lamp monitor and sensors on its bus.
-/// Nothing here waits for motion: each call is at most a few link transactions, each with a deadline. Waiting is
+/// A goniometer stage: arms, sample azimuth, carriage, filter wheel, shutters, and the lamp monitor and sensors on its
+/// bus. Nothing here waits for motion: each call is at most a few link transactions, each with a deadline. Waiting is
 /// `MoveTask`'s (drivers/motion): a pure state machine that is shown `StageState`s.
 /// Threads: owned by one. STOP does not pass here; it has `HaltLine`.
 class Stage {
@@ -76,8 +76,8 @@ class Stage {
   /// Errors: Unreachable, TimedOut, BadReply, WrongDevice. Reconnects by itself on the next call after a failure.
   [[nodiscard]] virtual Result<StageState> read_state() = 0;
 
-  /// Starts all named axes at once; returns when the stage has been told, not when it has accepted (`accepted_token` says).
-  /// Errors: as read_state, OutOfLimits (nothing was sent), DeviceRefused.
+  /// Starts all named axes at once; returns when the stage has been told, not when it has accepted (`accepted_token`
+  /// says). Errors: as read_state, OutOfLimits (nothing was sent), DeviceRefused.
   [[nodiscard]] virtual Result<MotionToken> start_move(const MotionTarget& target, Epoch epoch) = 0;
   /// Homes all axes.
   [[nodiscard]] virtual Result<MotionToken> start_homing(Epoch epoch) = 0;
@@ -95,6 +95,8 @@ class HaltLine {
   /// `timeout` of zero ends the watch. Wall time.
   [[nodiscard]] virtual Result<void> watch_heartbeat(Duration timeout) = 0;
   [[nodiscard]] virtual Result<void> beat() = 0;
+  /// Makes a `beat` or `watch_heartbeat` in progress give up at once, so that a halt need not wait for it. Threads: any.
+  virtual void interrupt() = 0;
 };
 
 }  // namespace gonio::drivers

@@ -8,25 +8,25 @@ namespace gonio::drivers {
 
 /// One axis as instrument.toml has it; positions in the axis' unit, speeds per second of wall time.
 struct AxisConfig {
-  double offset = 0.0;        ///< position at zero counts
-  double low = 0.0;           ///< soft limits, both ends included
+  double offset = 0.0;  ///< position at zero counts
+  double low = 0.0;     ///< soft limits, both ends included
   double high = 0.0;
   double speed = 1.0;
   double acceleration = 1.0;
-  Duration settle{};          ///< how long the encoder must have stayed in the window
-  double window = 0.0;        ///< +- about the target: arrived, and still there while a reading is taken
+  Duration settle{};    ///< how long the encoder must have stayed in the window
+  double window = 0.0;  ///< +- about the target: arrived, and still there while a reading is taken
 };
 
 /// The stage as instrument.toml has it.
 struct StageConfig {
   stage::RegisterMap registers;
   stage::PerAxis<AxisConfig> axes{};
-  Duration reply_timeout{};       ///< of one exchange on the wire
-  Duration homing_time{};         ///< the longest that homing may take
-  Duration shutter_time{};        ///< the longest that a shutter may take
-  Duration heartbeat_timeout{};   ///< the stage stops when it has not heard from the daemon for so long
-  double deadline_factor = 1.5;   ///< a move may take so many times its computed time
-  Duration deadline_margin{};     ///< plus this
+  Duration reply_timeout{};      ///< of one exchange on the wire
+  Duration homing_time{};        ///< the longest that homing may take
+  Duration shutter_time{};       ///< the longest that a shutter may take
+  Duration heartbeat_timeout{};  ///< the stage stops when it has not heard from the daemon for so long
+  double deadline_factor = 1.5;  ///< a move may take so many times its computed time
+  Duration deadline_margin{};    ///< plus this
 
   [[nodiscard]] const AxisConfig& axis(stage::Axis a) const { return axes[stage::index_of(a)]; }
 };
