@@ -1,37 +1,18 @@
 #include "reflectance/directional_reflectance.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <optional>
 
 #include "reflectance/polar_integral.h"
 
 namespace gonio::reflectance {
 namespace {
 
-constexpr double kRounding = 4e-16;
-
-Integral smooth_by_rings(const Surface& surface, const Direction& i, double tolerance) {
-  constexpr int kFirstRings = 8;
-  constexpr int kMostRings = 256;
-  Integral result;
-  double coarse = 0.0;
-  for (int rings = kFirstRings; rings <= kMostRings; rings *= 2) {
-    const std::vector<HemisphereNode> nodes = gauss_rings(rings, 2 * rings, RingSpacing::SqrtMu);
-    double fine = 0.0;
-    for (const HemisphereNode& node : nodes) fine += node.weight_sr * in_per_steradian(surface.eval(i, node.direction));
-    result.value = fine;
-    result.evaluations += nodes.size();
-    result.error = std::abs(fine - coarse) + kRounding * std::abs(fine);
-    if (rings > kFirstRings && result.error <= tolerance * std::abs(fine)) break;
-    coarse = fine;
-  }
-  return result;
-}
+constexpr double kClosedForm = 2e-15;  // relative error that a model may leave in its formula
 
 Integral smooth_part(const Surface& surface, const Direction& i, double tolerance) {
   if (const std::optional<double> closed = surface.closed_rho_dh(i)) {
-    return {.value = *closed, .error = kRounding * 4.0 * std::abs(*closed)};
+    return {.value = *closed, .error = kClosedForm * std::abs(*closed)};
   }
   switch (surface.feature()) {
     case Feature::HotSpot:
@@ -41,7 +22,8 @@ Integral smooth_part(const Surface& surface, const Direction& i, double toleranc
     case Feature::Smooth:
       break;
   }
-  return smooth_by_rings(surface, i, tolerance);
+  const auto f = [&](const Direction& r) { return in_per_steradian(surface.eval(i, r)); };
+  return integrate_hemisphere(f, tolerance, RingSpacing::SqrtMu);
 }
 
 }  // namespace

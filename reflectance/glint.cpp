@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::array kParameters{
     ParameterSpec{.name = "slope_variance", .least = 1e-6, .most = 1.0, .meaning = "of both slope components together"},
-    ParameterSpec{.name = "refractive_index", .least = 1.0, .most = 1e9, .meaning = "below over above the surface"},
+    ParameterSpec{.name = "refractive_index", .least = 1.0, .most = 1e12, .meaning = "below over above the surface"},
 };
 
 }  // namespace
@@ -17,7 +17,7 @@ constinit const ModelSpec Glint::kSpec{"glint", "facets with Gaussian slopes, no
 constinit const ModelSpec Glint::kSpecSmith{"glint_smith", "facets with Gaussian slopes, Smith shadowing", kParameters};
 
 double cox_munk_slope_variance(double wind_m_per_s) {
-  return 0.003 + 0.00512 * wind_m_per_s;
+  return (3.0 + 5.12 * wind_m_per_s) / 1000.0;
 }
 
 Glint::Glint(GlintParameters p)

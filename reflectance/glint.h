@@ -21,7 +21,7 @@ enum class Shadowing : std::uint8_t {
 struct GlintParameters {
   double slope_variance = 0.0;  ///< sigma^2 of both slope components together, 1e-6 to 1
   double refractive_index =
-      1.34;  ///< of what lies below over what lies above, 1 to 1e9 (towards which it is a metal mirror)
+      1.34;  ///< of what lies below over what lies above, 1 to 1e12 (towards which it is a metal mirror)
   Shadowing shadowing = Shadowing::None;
 };
 

@@ -5,29 +5,18 @@
 #include <numbers>
 
 #include "reflectance/gauss_legendre.h"
+#include "reflectance/refinement.h"
 
 namespace gonio::reflectance {
 namespace {
 
-constexpr int kFirstRings = 8;
-constexpr int kMostRings = 256;
-constexpr double kRounding = 4e-16;  // of a sum of weighted positive terms
+constexpr int kFirstLevel = 3;  // 8 rings
+constexpr int kLastLevel = 8;   // 256 rings of 512 directions
 
-struct Sums {
-  double value = 0.0;
-  double size = 0.0;  ///< of |s|: what a relative tolerance means where s changes sign
-  std::uint64_t evaluations = 0;
-};
-
-Sums ring_sums(const std::function<double(const Direction&)>& s, int rings) {
-  Sums sums;
-  for (const HemisphereNode& node : gauss_rings(rings, 2 * rings)) {
-    const double term = node.weight_sr * s(node.direction);
-    sums.value += term;
-    sums.size += std::abs(term);
-    ++sums.evaluations;
-  }
-  return sums;
+RuleSum ring_sum(const std::function<double(const Direction&)>& s, int rings, RingSpacing spacing) {
+  RuleSum sum;
+  for (const HemisphereNode& node : gauss_rings(rings, 2 * rings, spacing)) sum.add(node.weight_sr * s(node.direction));
+  return sum;
 }
 
 }  // namespace
@@ -51,18 +40,10 @@ std::vector<HemisphereNode> gauss_rings(int rings, int azimuths, RingSpacing spa
   return nodes;
 }
 
-Integral integrate_hemisphere(const std::function<double(const Direction&)>& s, double relative_tolerance) {
-  Sums coarse = ring_sums(s, kFirstRings);
-  Integral result{.evaluations = coarse.evaluations};
-  for (int rings = 2 * kFirstRings; rings <= kMostRings; rings *= 2) {
-    const Sums fine = ring_sums(s, rings);
-    result.value = fine.value;
-    result.error = std::abs(fine.value - coarse.value) + kRounding * fine.size;
-    result.evaluations += fine.evaluations;
-    if (result.error <= relative_tolerance * fine.size) break;
-    coarse = fine;
-  }
-  return result;
+Integral integrate_hemisphere(const std::function<double(const Direction&)>& s, double relative_tolerance,
+                              RingSpacing spacing) {
+  return refined(kFirstLevel, kLastLevel, relative_tolerance,
+                 [&](int level) { return ring_sum(s, 1 << level, spacing); });
 }
 
 }  // namespace gonio::reflectance

@@ -39,6 +39,6 @@ enum class RingSpacing : std::uint8_t {
 /// s changes sign) or 256 rings are reached. A kink in s, as in an interpolated table, slows it to some 1e-5. `s` must
 /// give finite numbers.
 [[nodiscard]] Integral integrate_hemisphere(const std::function<double(const Direction&)>& s,
-                                            double relative_tolerance = 1e-6);
+                                            double relative_tolerance = 1e-6, RingSpacing spacing = RingSpacing::Mu);
 
 }  // namespace gonio::reflectance

@@ -47,7 +47,7 @@ Result<Surface> make_glint(Values v) {
 constexpr std::array kSea{
     ParameterSpec{
         .name = "wind_m_per_s", .least = 0.0, .most = 30.0, .unit = "m/s", .meaning = "wind at 12.5 m height"},
-    ParameterSpec{.name = "refractive_index", .least = 1.0, .most = 1e9, .meaning = "of the water"},
+    ParameterSpec{.name = "refractive_index", .least = 1.0, .most = 4.0, .meaning = "of the water"},
 };
 constexpr ModelSpec kCoxMunk{"cox_munk", "glint of a sea under wind, no shadowing", kSea};
 constexpr ModelSpec kCoxMunkSmith{"cox_munk_smith", "glint of a sea under wind, Smith shadowing", kSea};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "reflectance/refinement.h"
 #include "reflectance/tanh_sinh.h"
 
 namespace gonio::reflectance {
@@ -10,7 +11,6 @@ namespace {
 
 constexpr int kFirstLevel = 2;
 constexpr int kLastLevel = 6;
-constexpr double kRounding = 4e-16;
 
 // One meridian: r at the arc xi from the axis in the azimuth psi about it, psi = 0 towards the normal; up to the
 // horizon.
@@ -43,29 +43,23 @@ class Meridian {
   double length_;
 };
 
-struct Level {
-  double value = 0.0;
-  std::uint64_t evaluations = 0;
-};
-
 // f mu sin(xi) dxi along one meridian.
 void add_meridian(const Surface& surface, const Direction& i, const Meridian& meridian, double weight,
-                  const std::vector<EndNode>& rule, Level& sum) {
+                  const std::vector<EndNode>& rule, RuleSum& sum) {
   for (const EndNode& node : rule) {
     const double xi = meridian.length() * node.x;
     const Direction r = meridian.at(xi, meridian.length() * node.rest);
     const double f = in_per_steradian(surface.eval(i, r));
-    sum.value += weight * node.weight * meridian.length() * f * r.mu() * std::sin(xi);
-    ++sum.evaluations;
+    sum.add(weight * node.weight * meridian.length() * f * r.mu() * std::sin(xi));
   }
 }
 
 // psi in quarters: at grazing axes the horizon bends sharply at psi = +-90 deg, where quarters meet.
-Level at_level(const Surface& surface, const Direction& i, const Direction& axis, int level) {
+RuleSum at_level(const Surface& surface, const Direction& i, const Direction& axis, int level) {
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   const std::vector<EndNode> rule = tanh_sinh(level);
   const double sides = surface.is_isotropic() ? 2.0 : 1.0;  // psi and -psi see the same
-  Level sum;
+  RuleSum sum;
   for (const EndNode& node : rule) {
     const double weight = sides * node.weight * kQuarter;
     const double c = std::sin(kQuarter * node.rest);
@@ -82,18 +76,8 @@ Level at_level(const Surface& surface, const Direction& i, const Direction& axis
 }  // namespace
 
 Integral polar_integral(const Surface& surface, const Direction& i, const Direction& axis, double relative_tolerance) {
-  Integral result;
-  Level coarse = at_level(surface, i, axis, kFirstLevel);
-  result.evaluations = coarse.evaluations;
-  for (int level = kFirstLevel + 1; level <= kLastLevel; ++level) {
-    const Level fine = at_level(surface, i, axis, level);
-    result.value = fine.value;
-    result.error = std::abs(fine.value - coarse.value) + kRounding * std::abs(fine.value);
-    result.evaluations += fine.evaluations;
-    if (result.error <= relative_tolerance * std::abs(fine.value)) break;
-    coarse = fine;
-  }
-  return result;
+  return refined(kFirstLevel, kLastLevel, relative_tolerance,
+                 [&](int level) { return at_level(surface, i, axis, level); });
 }
 
 }  // namespace gonio::reflectance

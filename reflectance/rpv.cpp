@@ -9,7 +9,7 @@ namespace {
 constexpr std::array kParameters{
     ParameterSpec{.name = "rho0", .least = 0.0, .most = 1.0, .meaning = "level"},
     ParameterSpec{.name = "k", .least = 0.0, .most = 2.0, .meaning = "bowl (below 1) or bell (above 1)"},
-    ParameterSpec{.name = "g", .least = -0.99, .most = 0.99, .meaning = "asymmetry, below 0 back-scattering"},
+    ParameterSpec{.name = "g", .least = -0.999999, .most = 0.999999, .meaning = "asymmetry, below 0 back-scattering"},
 };
 
 }  // namespace
@@ -18,10 +18,7 @@ constinit const ModelSpec Rpv::kSpec{"rpv", "Rahman-Pinty-Verstraete, eq 8 read 
 constinit const ModelSpec Rpv::kSpecBrf{"rpv_brf", "Rahman-Pinty-Verstraete, eq 8 read as pi times the BRDF",
                                         kParameters};
 
-Rpv::Rpv(RpvParameters p)
-    : p_(p),
-      scale_(p.rho0 * (1.0 - p.g) * (1.0 + p.g) / (p.norm == RpvNorm::Brf ? std::numbers::pi : 1.0)),
-      offset_((1.0 - std::abs(p.g)) * (1.0 - std::abs(p.g))) {}
+Rpv::Rpv(RpvParameters p) : p_(p), phase_(p.g), scale_(p.norm == RpvNorm::Brf ? p.rho0 / std::numbers::pi : p.rho0) {}
 
 Result<Rpv> Rpv::make(RpvParameters p) {
   GONIO_TRY(check_values(p.norm == RpvNorm::Brdf ? kSpec : kSpecBrf, std::array{p.rho0, p.k, p.g}));

@@ -6,6 +6,7 @@
 
 #include "base/result.h"
 #include "reflectance/clamped_cosine.h"
+#include "reflectance/henyey_greenstein.h"
 #include "reflectance/model_spec.h"
 #include "reflectance/surface.h"
 
@@ -20,7 +21,7 @@ enum class RpvNorm : std::uint8_t {
 struct RpvParameters {
   double rho0 = 0.0;  ///< 0 to 1; level
   double k = 1.0;     ///< 0 to 2; below 1 a bowl, above 1 a bell
-  double g = 0.0;     ///< -0.99 to 0.99; below 0 back-scattering
+  double g = 0.0;     ///< -0.999999 to 0.999999; below 0 back-scattering
   RpvNorm norm = RpvNorm::Brdf;
 };
 
@@ -41,11 +42,8 @@ class Rpv {
     const double mu_r = clamped_mu(r);
     const double product = mu_i * mu_r;
     const SeparationTerms t = separation_terms(i, r);
-    // 1 + g^2 + 2 g cos(xi) as a sum of two positive parts on either side of g = 0.
-    const double q =
-        p_.g < 0.0 ? offset_ - 4.0 * p_.g * sin2_half_phase(t) : offset_ + 4.0 * p_.g * cos2_half_phase(i, r);
     const double hot_spot = 1.0 + (1.0 - p_.rho0) / (1.0 + retro_distance(t, product));
-    return per_steradian(scale_ * std::pow(product * (mu_i + mu_r), p_.k - 1.0) / (q * std::sqrt(q)) * hot_spot);
+    return per_steradian(scale_ * std::pow(product * (mu_i + mu_r), p_.k - 1.0) * phase_(i, r, t) * hot_spot);
   }
 
   [[nodiscard]] std::string_view model() const { return p_.norm == RpvNorm::Brdf ? kSpec.name : kSpecBrf.name; }
@@ -56,8 +54,8 @@ class Rpv {
  private:
   explicit Rpv(RpvParameters p);
   RpvParameters p_;
-  double scale_;   ///< rho0 (1 - g^2), by pi for Brf
-  double offset_;  ///< (1 - |g|)^2
+  HenyeyGreenstein phase_;  ///< F
+  double scale_;            ///< rho0, by pi for Brf
 };
 
 }  // namespace gonio::reflectance
