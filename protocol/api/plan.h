@@ -16,31 +16,33 @@ enum class OnItemError : std::uint8_t { Skip, Hold, Fail };
 enum class OnRestart : std::uint8_t { Resume, Hold };
 enum class ReferenceMode : std::uint8_t { SameGeometry };
 
-/// A plan as its author wrote it, checked for form (names, units, ranges of single values) but not yet for the instrument:
-/// limits, blocked geometries and the reference's reach are the planner's. The product of the lists, theta_i slowest.
+/// A plan as its author wrote it, checked for form (names, units, ranges of single values) but not yet for the
+/// instrument: limits, blocked geometries and the reference's reach are the planner's. The product of the lists,
+/// theta_i slowest.
 struct Plan {
   std::string name;
   std::string sample;
-  bool isotropic = true;                ///< [scan] isotropic, default true: phi_r counts from phi_i, theta = 0 merges all phi
+  bool isotropic = true;  ///< [scan] isotropic, default true: phi_r counts from phi_i, theta = 0 merges all phi
   std::vector<Angle> theta_i;
-  std::vector<Angle> phi_i;             ///< default {0}
+  std::vector<Angle> phi_i;  ///< default {0}
   std::vector<Angle> theta_r;
   std::vector<Angle> phi_r;
   std::vector<Wavelength> wavelengths;
-  double target_snr = 300.0;            ///< of one reading
-  Duration max_time{};                  ///< of one reading, exposure times frames
-  std::string reference_standard;       ///< serial number
+  double target_snr = 300.0;       ///< of one reading
+  Duration max_time{};             ///< of one reading, exposure times frames
+  std::string reference_standard;  ///< serial number
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
-  Duration block{};                     ///< sample items and their reference partners lie within this time
-  Duration dark_every{};                ///< visits
+  Duration block{};       ///< sample items and their reference partners lie within this time
+  Duration dark_every{};  ///< visits
   OrderStrategy order = OrderStrategy::Fastest;
   std::uint64_t order_seed = 1;
-  int item_retries = 2;                 ///< on_error.item = "retry N, then skip|hold|fail"
+  int item_retries = 2;  ///< on_error.item = "retry N, then skip|hold|fail"
   OnItemError on_item_error = OnItemError::Skip;
   OnRestart on_restart = OnRestart::Resume;
 };
 
-/// Errors: InvalidInput, UnknownKey, MissingKey, with file, line, field and nearest name. `file` is the user's name for it.
+/// Errors: InvalidInput, UnknownKey, MissingKey, with file, line, field and nearest name. `file` is the user's name for
+/// it.
 [[nodiscard]] Result<Plan> parse_plan(std::string_view toml, const std::string& file);
 
 }  // namespace gonio::api

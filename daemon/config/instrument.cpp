@@ -1,0 +1,263 @@
+#include "daemon/config/instrument.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "base/toml_reader.h"
+#include "daemon/config/configuration_hash.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr double kAnHour = 3600.0;
+constexpr NumberRange kSomeTime{.least = 1e-6, .most = kAnHour, .unit = "s"};
+constexpr NumberRange kTime{.least = 0.0, .most = kAnHour, .unit = "s"};
+constexpr NumberRange kLength{.least = 1e-3, .most = 1e5, .unit = "mm"};
+constexpr NumberRange kNotNegative{.least = 0.0};
+constexpr NumberRange kFraction{.least = 0.0, .most = 1.0};
+constexpr NumberRange kAngleUncertainty{.least = 0.0, .most = 5.0, .unit = "deg"};
+
+Duration time(TomlReader& table, std::string_view key, NumberRange range = kSomeTime) {
+  return seconds(table.number(key, range));
+}
+
+Angle angle(TomlReader& table, std::string_view key, NumberRange range) {
+  return degrees(table.number(key, range));
+}
+
+Length length(TomlReader& table, std::string_view key, NumberRange range = kLength) {
+  return millimetres(table.number(key, range));
+}
+
+drivers::AxisConfig read_axis(TomlReader& table, std::string_view unit) {
+  const auto key = [&](std::string_view name, std::string_view per = {}) {
+    return fmt::format("{}_{}{}", name, unit, per);
+  };
+  const NumberRange position{.unit = unit};
+  const NumberRange positive{.least = 1e-9, .unit = unit};
+  drivers::AxisConfig axis;
+  axis.offset = table.number(key("offset"), position);
+  axis.low = table.number(key("low"), position);
+  axis.high = table.number(key("high"), position);
+  axis.speed = table.number(key("speed", "_per_s"), positive);
+  axis.acceleration = table.number(key("acceleration", "_per_s2"), positive);
+  axis.settle = time(table, "settle_s", kTime);
+  axis.window = table.number(key("window"), positive);
+  if (axis.low >= axis.high) {
+    table.fail(key("low"), ErrorCode::InvalidInput, fmt::format("value {} {}", axis.low, unit),
+               fmt::format("below {} = {} {}", key("high"), axis.high, unit));
+  }
+  return axis;
+}
+
+drivers::StageConfig read_stage_config(TomlReader& table) {
+  drivers::StageConfig stage;
+  stage.reply_timeout = time(table, "reply_timeout_s");
+  stage.homing_time = time(table, "homing_time_s");
+  stage.shutter_time = time(table, "shutter_time_s");
+  stage.heartbeat_timeout = time(table, "heartbeat_timeout_s", {.least = 0.1, .most = 60.0, .unit = "s"});
+  stage.deadline_factor = table.number_or("deadline_factor", 1.5, {.least = 1.0, .most = 100.0});
+  stage.deadline_margin = seconds(table.number_or("deadline_margin_s", 1.0, kTime));
+  TomlReader axes = table.table("axes");
+  for (const stage::Axis axis : stage::kAllAxes) {
+    TomlReader one = axes.table(stage::axis_name(axis));
+    stage.axes[stage::index_of(axis)] = read_axis(one, stage::axis_unit(axis));
+  }
+  TomlReader registers = table.table("registers");
+  stage.registers = stage::read_register_map(registers);
+  return stage;
+}
+
+StageAddress read_stage_address(TomlReader& table) {
+  constexpr std::array<std::string_view, 1> kLinks{"tcp"};
+  (void)table.choice("link", kLinks);
+  StageAddress address;
+  address.host = table.text("address");
+  address.port = static_cast<std::uint16_t>(table.integer("port", 1, 65535));
+  return address;
+}
+
+Length carriage_position(TomlReader& table, std::string_view key, const drivers::StageConfig& stage) {
+  const drivers::AxisConfig& axis = stage.axis(stage::Axis::Carriage);
+  return length(table, key, {.least = axis.low, .most = axis.high, .unit = "mm"});
+}
+
+CarriagePositions read_carriage(TomlReader table, const drivers::StageConfig& stage) {
+  return {.sample = carriage_position(table, "sample_mm", stage),
+          .reference = carriage_position(table, "reference_mm", stage),
+          .trap = carriage_position(table, "trap_mm", stage)};
+}
+
+Filter read_filter(TomlReader& table, const drivers::AxisConfig& wheel) {
+  constexpr std::array<std::string_view, 2> kSides{"detector", "source"};
+  const auto least = static_cast<std::int64_t>(std::ceil(wheel.low));
+  const auto most = static_cast<std::int64_t>(std::floor(wheel.high));
+  Filter filter;
+  filter.slot = static_cast<int>(table.integer("slot", least, most));
+  filter.centroid = nanometres(table.number("centroid_nm", {.least = 100.0, .most = 20000.0, .unit = "nm"}));
+  filter.fwhm = nanometres(table.number("fwhm_nm", {.least = 0.01, .most = 1000.0, .unit = "nm"}));
+  filter.out_of_band_fraction = table.number("out_of_band_fraction", kFraction);
+  filter.side = static_cast<FilterSide>(table.choice("side", kSides));
+  return filter;
+}
+
+std::vector<Filter> read_filters(TomlReader& stage_table, const drivers::StageConfig& stage) {
+  std::vector<Filter> filters;
+  std::set<int> slots;
+  for (TomlReader& table : stage_table.tables("filters")) {
+    filters.push_back(read_filter(table, stage.axis(stage::Axis::FilterWheel)));
+    if (slots.insert(filters.back().slot).second) continue;
+    table.fail("slot", ErrorCode::InvalidInput, fmt::format("slot {} stands here twice", filters.back().slot),
+               "one filter a slot");
+  }
+  if (filters.empty()) {
+    stage_table.fail("filters", ErrorCode::MissingKey, "there is no filter", "at least one [[stage.filters]]");
+  }
+  return filters;
+}
+
+Shadow read_shadow(TomlReader table) {
+  return {.detector_head_radius = length(table, "detector_head_radius_mm"),
+          .source_head_radius = length(table, "source_head_radius_mm"),
+          .detector_arm = length(table, "detector_arm_mm"),
+          .source_arm = length(table, "source_arm_mm")};
+}
+
+calibration::ApertureMask read_aperture(TomlReader table, const DetectorConfig& detector) {
+  calibration::ApertureMask mask;
+  mask.centre_x_px = table.number("centre_x_px", {.least = 0.0, .most = detector.width_px - 1.0, .unit = "px"});
+  mask.centre_y_px = table.number("centre_y_px", {.least = 0.0, .most = detector.height_px - 1.0, .unit = "px"});
+  // The whole circle must lie on the sensor: a cut one would not see what the certificate's spot was.
+  const double reach = std::min(std::min(mask.centre_x_px, detector.width_px - 1.0 - mask.centre_x_px),
+                                std::min(mask.centre_y_px, detector.height_px - 1.0 - mask.centre_y_px));
+  mask.radius_px = table.number("radius_px", {.least = 1.0, .most = std::max(1.0, reach), .unit = "px"});
+  return mask;
+}
+
+DetectorConfig read_detector(TomlReader& table) {
+  constexpr std::array<std::string_view, 1> kKinds{"genicam"};
+  constexpr std::array<std::string_view, 3> kFormats{"Mono8", "Mono12", "Mono16"};
+  (void)table.choice("kind", kKinds);
+  DetectorConfig detector;
+  detector.address = table.text("address");
+  detector.serial = table.text("serial");
+  detector.width_px = static_cast<int>(table.integer("width_px", 4, 16384));
+  detector.height_px = static_cast<int>(table.integer("height_px", 4, 16384));
+  detector.pixel_format = kFormats[table.choice("pixel_format", kFormats)];
+  detector.packet_size_bytes = static_cast<int>(table.integer("packet_size_bytes", 576, 9000));
+  const double shortest = table.number("shortest_exposure_s", kSomeTime);
+  detector.shortest_exposure = seconds(shortest);
+  detector.longest_exposure =
+      seconds(table.number("longest_exposure_s", {.least = shortest, .most = kAnHour, .unit = "s"}));
+  detector.gain_db = table.number("gain_db", {.least = 0.0, .most = 60.0, .unit = "dB"});
+  detector.frames_at_most = static_cast<int>(table.integer("frames_at_most", 1, 100000));
+  detector.aperture = read_aperture(table.table("aperture"), detector);
+  return detector;
+}
+
+calibration::DetectorModel read_detector_model(TomlReader table) {
+  calibration::DetectorModel model;
+  model.electrons_per_dn = table.number("electrons_per_dn", {.least = 1e-6, .most = 1e9});
+  model.read_noise_dn = table.number("read_noise_dn", kNotNegative);
+  model.full_scale_dn = table.number("full_scale_dn", {.least = 1.0, .most = 65535.0, .unit = "DN"});
+  model.exposure_offset_s = {.value = table.number("exposure_offset_s", {.least = -1.0, .most = 1.0, .unit = "s"}),
+                             .u = table.number("u_exposure_offset_s", {.least = 0.0, .most = 1.0, .unit = "s"})};
+  model.u_linearity = table.number("u_linearity", kFraction);
+  model.u_dark_drift_dn_per_s = table.number("u_dark_drift_dn_per_s", kNotNegative);
+  return model;
+}
+
+calibration::AngleModel read_angles(TomlReader& table) {
+  return {.u_zero_theta_i = angle(table, "u_zero_theta_i_deg", kAngleUncertainty),
+          .u_zero_theta_r = angle(table, "u_zero_theta_r_deg", kAngleUncertainty),
+          .u_zero_phi_r = angle(table, "u_zero_phi_r_deg", kAngleUncertainty),
+          .u_repeat = angle(table, "u_repeat_deg", kAngleUncertainty)};
+}
+
+ConeAngles read_cones(TomlReader& table) {
+  constexpr NumberRange kHalfCone{.least = 0.0, .most = 30.0, .unit = "deg"};
+  return {.detector_half = angle(table, "detector_half_cone_deg", kHalfCone),
+          .source_half = angle(table, "source_half_cone_deg", kHalfCone)};
+}
+
+calibration::LampModel read_lamp_model(TomlReader& table) {
+  calibration::LampModel model;
+  model.u_after_monitor = table.number("u_after_monitor", kFraction);
+  model.correlation_s = table.number("correlation_s", {.least = 1e-3, .most = 1e7, .unit = "s"});
+  model.u_reproducibility = table.number("u_reproducibility", kFraction);
+  return model;
+}
+
+LampBand read_lamp_band(TomlReader& table) {
+  LampBand band;
+  band.low = table.number("monitor_low", kNotNegative);
+  band.high = table.number("monitor_high", {.least = band.low});
+  return band;
+}
+
+void read_stage(TomlReader table, Instrument& instrument) {
+  instrument.stage_address = read_stage_address(table);
+  instrument.stage = read_stage_config(table);
+  instrument.carriage = read_carriage(table.table("carriage"), instrument.stage);
+  instrument.filters = read_filters(table, instrument.stage);
+  instrument.shadow = read_shadow(table.table("shadow"));
+}
+
+}  // namespace
+
+Result<Instrument> parse_instrument(std::string_view text, const std::string& file) {
+  Result<TomlReader> root = TomlReader::parse(text, file);
+  if (!root) return failure(std::move(root).error());
+  Instrument instrument;
+  instrument.text = text;
+  instrument.sha256 = configuration_hash(*root, text);
+  TomlReader about = root->table("instrument");
+  instrument.name = about.text("name");
+  const std::filesystem::path directory = about.text_or("reference_directory", "reference");
+  instrument.reference_directory = (std::filesystem::path(file).parent_path() / directory).string();
+  read_stage(root->table("stage"), instrument);
+  TomlReader detector = root->table("detector");
+  instrument.detector = read_detector(detector);
+  instrument.model.detector = read_detector_model(detector.table("model"));
+  TomlReader angles = root->table("angles");
+  instrument.model.angles = read_angles(angles);
+  instrument.cones = read_cones(angles);
+  TomlReader lamp = root->table("lamp");
+  instrument.model.lamp = read_lamp_model(lamp);
+  instrument.lamp = read_lamp_band(lamp);
+  GONIO_TRY(root->finish());
+  return instrument;
+}
+
+Result<Instrument> read_instrument(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in.good() && !in.eof()) {
+    return failure({.code = ErrorCode::FileUnreadable,
+                    .tried = "open the instrument's file",
+                    .seen = "it does not exist or may not be read",
+                    .where = InputLocation{path, 0, ""}});
+  }
+  return parse_instrument(text, path);
+}
+
+const Filter* filter_for(const Instrument& instrument, Wavelength wavelength) {
+  const Filter* nearest = nullptr;
+  double least = 0.0;
+  for (const Filter& filter : instrument.filters) {
+    const double off = std::abs((filter.centroid - wavelength).si());
+    if (off > 0.5 * filter.fwhm.si() || (nearest != nullptr && off >= least)) continue;
+    nearest = &filter;
+    least = off;
+  }
+  return nearest;
+}
+
+}  // namespace gonio::daemon

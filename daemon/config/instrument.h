@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "base/units.h"
+#include "calibration/frame_reduction.h"
+#include "calibration/instrument_model.h"
+#include "drivers/stage_config.h"
+
+namespace gonio::daemon {
+
+/// Where the stage answers: Modbus TCP. Not part of the configuration's hash.
+struct StageAddress {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+/// Where the carriage stands for each target.
+struct CarriagePositions {
+  Length sample;
+  Length reference;
+  Length trap;
+};
+
+enum class FilterSide : std::uint8_t { Detector, Source };
+
+/// What is in one slot of the filter wheel.
+struct Filter {
+  int slot = 0;
+  Wavelength centroid;
+  Wavelength fwhm;
+  double out_of_band_fraction = 0.0;  ///< of the signal, 0..1
+  FilterSide side = FilterSide::Detector;
+};
+
+/// The keep-out about retro-reflection: the detector's head in the source's beam.
+struct Shadow {
+  Length detector_head_radius;
+  Length source_head_radius;
+  Length detector_arm;
+  Length source_arm;
+};
+
+/// The imaging detector as instrument.toml has it. Exposures are shortest * 2^n, up to longest: wall time.
+struct DetectorConfig {
+  std::string address;  ///< not part of the configuration's hash
+  std::string serial;   ///< the camera must be this one
+  int width_px = 0;
+  int height_px = 0;
+  std::string pixel_format;
+  int packet_size_bytes = 0;
+  Duration shortest_exposure{};
+  Duration longest_exposure{};
+  double gain_db = 0.0;
+  int frames_at_most = 1;  ///< of one reading
+  calibration::ApertureMask aperture;
+};
+
+/// Half angles of the cones that the detector and the source fill, seen from the sample.
+struct ConeAngles {
+  Angle detector_half;
+  Angle source_half;
+};
+
+/// Outside of this band, in the monitor's unit, the lamp counts as failed.
+struct LampBand {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The instrument as its file describes it: everything that goniod knows of it. A value: share it as const.
+struct Instrument {
+  std::string name;
+  std::string text;                 ///< the file, verbatim: stored with each scan
+  std::string sha256;               ///< of the text without addresses, as hex: scans resume under the same one only
+  std::string reference_directory;  ///< where the standards' files lie; absolute, or relative to the working directory
+  StageAddress stage_address;
+  drivers::StageConfig stage;
+  CarriagePositions carriage;
+  std::vector<Filter> filters;
+  Shadow shadow;
+  DetectorConfig detector;
+  ConeAngles cones;
+  LampBand lamp;
+  calibration::InstrumentModel model;
+};
+
+/// Reads and checks the text. Errors: InvalidInput, UnknownKey, MissingKey, each with file, line, field and limit.
+/// `file` is the path shown in errors; `reference_directory` is resolved beside it.
+[[nodiscard]] Result<Instrument> parse_instrument(std::string_view text, const std::string& file);
+/// Errors: as parse_instrument, FileUnreadable.
+[[nodiscard]] Result<Instrument> read_instrument(const std::string& path);
+
+/// The filter for a wavelength, or nullptr: the one whose centroid lies within half its FWHM, the nearest of them.
+[[nodiscard]] const Filter* filter_for(const Instrument& instrument, Wavelength wavelength);
+
+}  // namespace gonio::daemon

@@ -1,0 +1,214 @@
+#include "protocol/api/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "base/toml_reader.h"
+
+namespace gonio::api {
+namespace {
+
+constexpr std::size_t kLongestList = 100'000;
+constexpr double kMostPoints = 1e7;
+constexpr NumberRange kTheta{.least = 0.0, .most = 90.0, .unit = "deg"};
+constexpr NumberRange kPhi{.least = -360.0, .most = 360.0, .unit = "deg"};
+constexpr NumberRange kWavelength{.least = 100.0, .most = 20'000.0, .unit = "nm"};
+constexpr NumberRange kWait{.least = 1.0, .most = 1e6, .unit = "s"};
+
+// 3 * 0.1 is not 0.3; a nano-degree is far below what any axis resolves.
+double without_creep(double value) {
+  return std::round(value * 1e9) / 1e9;
+}
+
+// {from, to, step}: both ends included; `to` must be a whole number of steps away.
+std::vector<double> read_steps(TomlReader& geometry, std::string_view key, NumberRange range) {
+  TomlReader table = geometry.table(key);
+  const double from = table.number("from", range);
+  const double to = table.number("to", range);
+  const double step = table.number("step", {.least = 1e-6, .unit = range.unit});
+  if (table.has_failed()) return {};
+  if (to < from) {
+    table.fail("to", ErrorCode::InvalidInput, fmt::format("value {} {}", to, range.unit),
+               fmt::format("at least from = {} {}", from, range.unit));
+    return {};
+  }
+  const double steps = (to - from) / step;
+  const double whole = std::round(steps);
+  if (std::abs(steps - whole) > 1e-6) {
+    table.fail("step", ErrorCode::InvalidInput,
+               fmt::format("{} {} are not a whole number of steps from {} to {}", step, range.unit, from, to),
+               fmt::format("the last step ends at {} {}", without_creep(from + std::floor(steps) * step), range.unit));
+    return {};
+  }
+  if (whole >= static_cast<double>(kLongestList)) {
+    table.fail("step", ErrorCode::InvalidInput, fmt::format("{:.0f} values", whole + 1.0),
+               fmt::format("at most {} values", kLongestList));
+    return {};
+  }
+  std::vector<double> values;
+  for (double k = 0.0; k <= whole; k += 1.0) values.push_back(without_creep(from + k * step));
+  return values;
+}
+
+void refuse_repetition(TomlReader& geometry, std::string_view key, const std::vector<double>& values,
+                       std::string_view unit) {
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
+  if (twice == sorted.end()) return;
+  geometry.fail(key, ErrorCode::InvalidInput, fmt::format("{} {} stands here twice", *twice, unit), "each value once");
+}
+
+std::vector<double> read_list(TomlReader& geometry, std::string_view key, NumberRange range) {
+  if (geometry.kind(key) == TomlKind::Table) return read_steps(geometry, key, range);
+  std::vector<double> values = geometry.numbers(key, range);
+  if (values.size() > kLongestList) {
+    geometry.fail(key, ErrorCode::InvalidInput, fmt::format("{} values", values.size()),
+                  fmt::format("at most {} values", kLongestList));
+  }
+  refuse_repetition(geometry, key, values, range.unit);
+  return values;
+}
+
+std::vector<Angle> read_angles(TomlReader& geometry, std::string_view key, NumberRange range) {
+  std::vector<Angle> angles;
+  for (const double value : read_list(geometry, key, range)) angles.push_back(degrees(value));
+  return angles;
+}
+
+void read_geometry(TomlReader geometry, Plan& plan) {
+  plan.theta_i = read_angles(geometry, "theta_i_deg", kTheta);
+  const bool has_phi_i = geometry.kind("phi_i_deg") != TomlKind::Absent;
+  plan.phi_i = has_phi_i ? read_angles(geometry, "phi_i_deg", kPhi) : std::vector<Angle>{Angle{}};
+  plan.theta_r = read_angles(geometry, "theta_r_deg", kTheta);
+  plan.phi_r = read_angles(geometry, "phi_r_deg", kPhi);
+  for (const double value : read_list(geometry, "wavelength_nm", kWavelength)) {
+    plan.wavelengths.push_back(nanometres(value));
+  }
+  double points = 1.0;
+  for (const std::size_t n :
+       {plan.theta_i.size(), plan.phi_i.size(), plan.theta_r.size(), plan.phi_r.size(), plan.wavelengths.size()}) {
+    points *= static_cast<double>(n);
+  }
+  if (points > kMostPoints) {
+    geometry.fail("theta_i_deg", ErrorCode::InvalidInput, fmt::format("the lists make {:.0f} points", points),
+                  fmt::format("at most {:.0f} points", kMostPoints));
+  }
+}
+
+void read_reading(TomlReader& root, Plan& plan) {
+  constexpr double kMaxTime = 4.0;
+  plan.max_time = seconds(kMaxTime);
+  std::optional<TomlReader> table = root.optional_table("reading");
+  if (!table) return;
+  plan.target_snr = table->number_or("target_snr", plan.target_snr, {.least = 1.0, .most = 1e6});
+  plan.max_time = seconds(table->number_or("max_time_s", kMaxTime, {.least = 1e-4, .most = 3600.0, .unit = "s"}));
+}
+
+void read_reference(TomlReader table, Plan& plan) {
+  constexpr std::array<std::string_view, 1> kModes{"same-geometry"};
+  constexpr double kBlock = 900.0;
+  plan.reference_standard = table.text("standard");
+  plan.reference_mode = static_cast<ReferenceMode>(table.choice_or("mode", 0, kModes));
+  plan.block = seconds(table.number_or("block_s", kBlock, kWait));
+}
+
+void read_visits(TomlReader& root, Plan& plan) {
+  constexpr double kDark = 300.0;
+  plan.dark_every = seconds(kDark);
+  std::optional<TomlReader> table = root.optional_table("visits");
+  if (table) plan.dark_every = seconds(table->number_or("dark_s", kDark, kWait));
+}
+
+void read_order(TomlReader& root, Plan& plan) {
+  constexpr std::array<std::string_view, 3> kStrategies{"fastest", "as-written", "random"};
+  std::optional<TomlReader> table = root.optional_table("order");
+  if (!table) return;
+  plan.order = static_cast<OrderStrategy>(table->choice_or("strategy", 0, kStrategies));
+  plan.order_seed = static_cast<std::uint64_t>(table->integer_or("seed", 1, 0, INT64_MAX));
+}
+
+std::optional<OnItemError> last_resort(std::string_view word) {
+  if (word == "skip") return OnItemError::Skip;
+  if (word == "hold") return OnItemError::Hold;
+  if (word == "fail") return OnItemError::Fail;
+  return std::nullopt;
+}
+
+struct ItemPolicy {
+  int retries = 0;
+  OnItemError then = OnItemError::Skip;
+};
+
+// "skip", or "retry 2, then skip".
+std::optional<ItemPolicy> item_policy(std::string_view text) {
+  constexpr std::string_view kRetry = "retry ";
+  constexpr std::string_view kThen = ", then ";
+  constexpr int kMostRetries = 10;
+  ItemPolicy policy;
+  if (text.starts_with(kRetry)) {
+    text.remove_prefix(kRetry.size());
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), policy.retries);
+    if (error != std::errc() || policy.retries < 0 || policy.retries > kMostRetries) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (!text.starts_with(kThen)) return std::nullopt;
+    text.remove_prefix(kThen.size());
+  }
+  const std::optional<OnItemError> then = last_resort(text);
+  if (!then) return std::nullopt;
+  policy.then = *then;
+  return policy;
+}
+
+void read_on_error(TomlReader& root, Plan& plan) {
+  std::optional<TomlReader> table = root.optional_table("on_error");
+  if (!table) return;
+  const std::string text = table->text_or("item", "retry 2, then skip");
+  const std::optional<ItemPolicy> policy = item_policy(text);
+  if (!policy) {
+    table->fail("item", ErrorCode::InvalidInput, fmt::format("found \"{}\"", text),
+                "\"skip\", \"hold\", \"fail\", or \"retry N, then skip\" with N up to 10");
+    return;
+  }
+  plan.item_retries = policy->retries;
+  plan.on_item_error = policy->then;
+}
+
+void read_on_restart(TomlReader& root, Plan& plan) {
+  constexpr std::array<std::string_view, 2> kPolicies{"resume", "hold"};
+  std::optional<TomlReader> table = root.optional_table("on_restart");
+  if (table) plan.on_restart = static_cast<OnRestart>(table->choice_or("policy", 0, kPolicies));
+}
+
+std::string needed_text(TomlReader& table, std::string_view key) {
+  std::string text = table.text(key);
+  if (text.empty()) table.fail(key, ErrorCode::InvalidInput, "the text is empty", "some text");
+  return text;
+}
+
+}  // namespace
+
+Result<Plan> parse_plan(std::string_view toml, const std::string& file) {
+  Result<TomlReader> root = TomlReader::parse(toml, file);
+  if (!root) return failure(std::move(root).error());
+  Plan plan;
+  TomlReader scan = root->table("scan");
+  plan.name = needed_text(scan, "name");
+  plan.sample = needed_text(scan, "sample");
+  plan.isotropic = scan.flag_or("isotropic", true);
+  read_geometry(root->table("geometry"), plan);
+  read_reading(*root, plan);
+  read_reference(root->table("reference"), plan);
+  read_visits(*root, plan);
+  read_order(*root, plan);
+  read_on_error(*root, plan);
+  read_on_restart(*root, plan);
+  GONIO_TRY(root->finish());
+  return plan;
+}
+
+}  // namespace gonio::api

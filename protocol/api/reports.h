@@ -1,0 +1,208 @@
+#pragma once
+
+// What the daemon answers, as values. Units stand in the names, as in the JSON of the same names (json.h).
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace gonio::api {
+
+struct AxisReport {
+  std::string name;       ///< "theta_i"
+  std::string unit;       ///< "deg", "mm" or "slot"
+  double position = 0.0;  ///< by the encoder, in that unit
+  bool moving = false;
+  bool homed = false;
+  bool at_limit = false;
+  int fault = 0;
+};
+
+/// The stage as last seen.
+struct StageReport {
+  double age_s = 0.0;  ///< since the stage said so
+  bool moving = false;
+  bool homed = false;
+  bool halted = false;  ///< STOP stands: `stage reset` clears it
+  bool heartbeat_tripped = false;
+  bool interlock_open = false;
+  int fault = 0;
+  std::int64_t epoch = 0;
+  std::int64_t boot_counter = 0;
+  std::string source_shutter;  ///< "open", "closed", "moving"
+  std::string detector_shutter;
+  double monitor = 0.0;
+  double lamp_temperature_c = 0.0;
+  double detector_temperature_c = 0.0;
+  double room_temperature_c = 0.0;
+  double humidity_percent = 0.0;
+  std::vector<AxisReport> axes;
+};
+
+/// Why a scan waits.
+struct HoldReport {
+  std::string name;
+  std::string owner;
+  std::string reason;
+  double age_s = 0.0;
+};
+
+/// Where time goes; a sum, or a mean for one point.
+struct TimeSplit {
+  double move_s = 0.0;
+  double settle_s = 0.0;
+  double expose_s = 0.0;
+  double read_s = 0.0;
+  double idle_s = 0.0;
+  [[nodiscard]] double total_s() const { return move_s + settle_s + expose_s + read_s + idle_s; }
+};
+
+struct ScanReport {
+  std::int64_t id = 0;
+  std::string name;
+  std::string campaign;
+  std::string sample;
+  bool isotropic = true;
+  std::string state;
+  std::string outcome;  ///< why it ended
+  std::string who;
+  std::string reference;
+  std::string instrument_sha256;
+  std::string submitted_utc;
+  std::string changed_utc;
+  std::int64_t points = 0;  ///< blocked ones included
+  std::int64_t merged = 0;
+  std::int64_t blocked = 0;
+  std::int64_t items = 0;  ///< sample and reference, of the points not blocked
+  std::int64_t accepted = 0;
+  std::int64_t skipped = 0;
+  std::int64_t attempts = 0;
+  std::int64_t visits = 0;
+  TimeSplit spent;
+  TimeSplit seconds_a_point;
+  std::vector<HoldReport> holds;
+  std::string doing;                        ///< while active: "exposing"
+  std::optional<double> remaining_s;        ///< while active, from measured times
+  std::optional<double> u_remaining_s;      ///< its standard uncertainty
+  std::optional<std::int64_t> brdf_values;  ///< once computed
+  std::optional<double> median_relative_u;  ///< of the expanded uncertainties U (k = 2 or by dof) over the value
+  std::optional<double> worst_relative_u;
+};
+
+struct StatusReport {
+  std::string version;
+  std::string instrument;
+  std::string instrument_sha256;
+  double uptime_s = 0.0;
+  std::string doing;
+  bool stage_stopped = false;
+  std::optional<ScanReport> active;
+  std::vector<std::int64_t> queued;
+  std::optional<StageReport> stage;  ///< none before the first answer of the stage
+  std::optional<Error> stage_error;
+  std::optional<Error> detector_error;
+  std::optional<Error> store_error;
+  std::int64_t last_event = 0;
+};
+
+struct HealthReport {
+  bool ok = false;
+  std::string version;
+};
+
+/// A dry run: what a plan would do on this instrument.
+struct PlanReport {
+  std::string name;
+  std::string sample;
+  std::string reference;
+  int planner_version = 0;
+  std::int64_t asked = 0;  ///< combinations in the plan's text
+  std::int64_t points = 0;
+  std::int64_t merged = 0;
+  std::int64_t blocked = 0;
+  std::int64_t items = 0;
+  TimeSplit estimate;
+  double estimate_s = 0.0;
+  std::vector<std::int64_t> order;  ///< of the points, the first 1000
+};
+
+struct PointReport {
+  std::int64_t index = 0;
+  std::int64_t rank = 0;
+  double theta_i_deg = 0.0;
+  double phi_i_deg = 0.0;
+  double theta_r_deg = 0.0;
+  double phi_r_deg = 0.0;
+  double wavelength_nm = 0.0;
+  bool blocked = false;
+  std::string sample;  ///< "accepted", "skipped", or empty while open
+  std::string reference;
+  std::int64_t attempts = 0;
+};
+
+/// One point of a result: a row of the export, or of GET brdf.
+struct BrdfReport {
+  std::int64_t point = 0;
+  double theta_i_deg = 0.0;  ///< as reported by the encoders where measured, else as planned
+  double phi_i_deg = 0.0;
+  double theta_r_deg = 0.0;
+  double phi_r_deg = 0.0;
+  double wavelength_nm = 0.0;
+  std::optional<double> brdf_per_sr;
+  std::optional<double> u_random_per_sr;  ///< standard uncertainties
+  std::optional<double> u_shared_per_sr;
+  std::optional<double> u_per_sr;
+  std::optional<double> k;  ///< coverage factor of 95.45 %, by the degrees of freedom
+  std::optional<double> expanded_u_per_sr;
+  std::string status;  ///< "accepted", "blocked", "skipped", "refused", "unmeasured"
+  std::string flags;   ///< words, separated by blanks
+};
+
+struct PointPage {
+  std::vector<PointReport> points;
+  std::optional<std::int64_t> next_after;  ///< ask with ?after= for more; none: this was the last page
+};
+struct BrdfPage {
+  std::vector<BrdfReport> values;
+  std::optional<std::int64_t> next_after;
+};
+struct ScanList {
+  std::vector<ScanReport> scans;  ///< newest first
+};
+
+struct ReferenceReport {
+  std::string serial;
+  std::string material;
+  std::string file;
+  std::string certificate_date;
+  std::string expires;
+  std::optional<Error> error;  ///< why it cannot be used
+};
+struct ReferenceList {
+  std::vector<ReferenceReport> references;
+};
+
+/// What a committed change was, in the order of commitment.
+struct Event {
+  std::int64_t number = 0;  ///< gapless, from 1
+  std::string kind;
+  int kind_version = 1;
+  std::int64_t scan = 0;
+  std::string who;
+  std::string utc;
+  std::string data;  ///< a JSON object
+};
+
+struct StopReport {
+  std::int64_t epoch = 0;  ///< commands decided before it are refused from now on
+};
+
+/// The answer to every other command.
+struct CommandReport {
+  std::int64_t scan = 0;  ///< concerned; 0: the stage
+  bool existed = false;   ///< submission: this idempotency key was known; `scan` is the one it made then
+};
+
+}  // namespace gonio::api

@@ -1,0 +1,41 @@
+#pragma once
+
+// What clients ask for, as values; the JSON bodies have the same names (json.h).
+#include <map>
+#include <optional>
+#include <string>
+
+namespace gonio::api {
+
+/// A plan with the files it names. The daemon parses and never opens a client's path.
+struct PlanSubmission {
+  std::string plan;                          ///< TOML, verbatim
+  std::string plan_file;                     ///< the user's name for it, shown in errors
+  std::map<std::string, std::string> parts;  ///< name -> text
+};
+
+/// Where to move by hand; what is absent stays.
+struct MoveRequest {
+  std::optional<double> theta_i_deg;
+  std::optional<double> theta_r_deg;
+  std::optional<double> phi_r_deg;
+  std::optional<double> phi_i_deg;
+  std::optional<double> carriage_mm;
+  std::optional<double> filter_wheel_slot;
+  std::optional<bool> source_shutter_open;
+  std::optional<bool> detector_shutter_open;
+};
+
+struct PauseRequest {
+  bool now = false;  ///< true drops the item in hand
+  std::string reason;
+};
+
+struct AbortRequest {
+  std::string reason;
+};
+
+/// The body of a command that needs no words: `{}` or nothing.
+struct NoWords {};
+
+}  // namespace gonio::api
