@@ -1,0 +1,87 @@
+#include "sim/devices/axis_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gonio::sim {
+namespace {
+
+constexpr std::uint16_t kFollowingError = 1;  // protocol/stage: `axis_fault`
+
+}  // namespace
+
+AxisModel::AxisModel(const AxisSpec& spec, double scale, double time_scale, double following_error_s, double position)
+    : spec_(spec),
+      dynamics_{.speed = spec.speed * time_scale, .acceleration = spec.acceleration * time_scale * time_scale},
+      scale_(scale),
+      following_error_(seconds(following_error_s / time_scale)),
+      path_(position),
+      origin_(position) {}
+
+std::int32_t AxisModel::counts(Instant t) const {
+  return static_cast<std::int32_t>(std::lround((position(t) - origin_) / scale_));
+}
+
+bool AxisModel::is_within_limits(double position) const {
+  const double half_count = 0.5 * std::abs(scale_);  // a limit that lies between two counts is reached by its nearest
+  return position >= spec_.low - half_count && position <= spec_.high + half_count;
+}
+
+void AxisModel::start(double target, double speed_factor, std::uint64_t move, Instant now) {
+  last_move_ = move;
+  const double here = position(now);
+  if (is_blocked_) {
+    if (here != target) fault_due_ = now + following_error_;
+    return;
+  }
+  path_ = Trajectory::move(here, target, {dynamics_.speed * speed_factor, dynamics_.acceleration}, now);
+}
+
+void AxisModel::move_to(double target, std::uint64_t move, Instant now) {
+  start(target, 1.0, move, now);
+}
+
+void AxisModel::home(std::uint64_t move, Instant now) {
+  constexpr double kCarefully = 0.5;
+  is_homed_ = false;
+  start(std::clamp(0.0, spec_.low, spec_.high), kCarefully, move, now);
+  if (!fault_due_) homing_end_ = path_.end();
+}
+
+void AxisModel::brake(Instant now) {
+  homing_end_.reset();
+  fault_due_.reset();
+  if (!path_.is_moving(now)) return;
+  path_ = Trajectory::brake(position(now), path_.velocity(now), dynamics_.acceleration, now);
+}
+
+void AxisModel::block(Instant now) {
+  is_blocked_ = true;
+  if (!path_.is_moving(now)) return;
+  homing_end_.reset();
+  fault_due_ = now + following_error_;
+  path_ = Trajectory(position(now));
+}
+
+void AxisModel::clear_fault() {
+  if (!is_blocked_) fault_ = 0;
+}
+
+std::optional<Instant> AxisModel::next_event() const {
+  if (fault_due_ && homing_end_) return std::min(*fault_due_, *homing_end_);
+  return fault_due_ ? fault_due_ : homing_end_;
+}
+
+bool AxisModel::advance_to(Instant now) {
+  if (homing_end_ && *homing_end_ <= now) {
+    homing_end_.reset();
+    origin_ = 0.0;
+    is_homed_ = true;
+  }
+  if (!fault_due_ || *fault_due_ > now) return false;
+  fault_due_.reset();
+  fault_ = kFollowingError;
+  return true;
+}
+
+}  // namespace gonio::sim

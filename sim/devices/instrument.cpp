@@ -1,0 +1,150 @@
+#include "sim/devices/instrument.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace gonio::sim {
+
+using stage::Axis;
+
+namespace {
+
+// Gauss-Legendre with 4 nodes on [-1, 1] (Abramowitz and Stegun 1964, table 25.4).
+constexpr std::array<double, 4> kNodes{-0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053};
+constexpr std::array<double, 4> kWeights{0.347854845137454, 0.652145154862546, 0.652145154862546, 0.347854845137454};
+
+bool is_open(const ShutterModel& shutter, Instant t) {
+  return shutter.state(t) == stage::ShutterState::Open;
+}
+
+ExposedPlace place_of(const LightPath& path, const StagePose& pose) {
+  const auto rounded = [&](Axis axis) {
+    return static_cast<std::int32_t>(std::lround(pose.positions[stage::index_of(axis)] * 100.0));
+  };
+  return {.station = path.station(pose.positions[stage::index_of(Axis::Carriage)]),
+          .centidegrees = {rounded(Axis::ThetaI), rounded(Axis::ThetaR), rounded(Axis::PhiR)},
+          .is_lit = pose.source_open && pose.detector_open};
+}
+
+}  // namespace
+
+Instrument::Instrument(Scene scene, InstrumentMemory memory, Instant power_up)
+    : scene_(std::move(scene)),
+      truth_(scene_),
+      lamp_(scene_),
+      light_path_(scene_, truth_),
+      stage_(scene_.stage, scene_.time_scale, memory.stage, power_up),
+      power_up_(power_up),
+      now_(power_up),
+      memory_(std::move(memory)) {}
+
+double Instrument::scene_time_s(Instant t) const {
+  return memory_.scene_time_s + scene_.scene_seconds(t - power_up_);
+}
+
+std::optional<Instant> Instrument::next_event() const {
+  const auto stage_event = stage_.next_event();
+  if (!running_) return stage_event;
+  return stage_event ? std::min(*stage_event, running_->close) : running_->close;
+}
+
+void Instrument::advance_to(Instant now) {
+  now_ = std::max(now_, now);
+  // What happens at an instant changes the motion after it: the light up to there belongs to the motion before.
+  for (auto due = next_event(); due && *due <= now_; due = next_event()) {
+    integrate_to(*due);
+    stage_.advance_to(*due);
+    if (running_ && running_->close <= *due) finish_exposure();
+  }
+  integrate_to(now_);
+}
+
+bool Instrument::start_exposure(Duration duration, double gain_db, Instant now) {
+  assert(duration > Duration::zero());
+  advance_to(now);
+  if (running_) return false;
+  stage_.open_gate(now_);
+  const StagePose here = pose(now_);
+  ++memory_.exposures;
+  if (here.source_open && here.detector_open) ++memory_.lit_exposures;
+  ++memory_.places[place_of(light_path_, here)];
+  running_ = Running{.open = now_, .close = now_ + duration, .integrated_to = now_, .gain_db = gain_db};
+  return true;
+}
+
+std::optional<Instant> Instrument::exposure_end() const {
+  return running_ ? std::optional<Instant>(running_->close) : std::nullopt;
+}
+
+std::optional<Exposure> Instrument::take_exposure(Instant now) {
+  advance_to(now);
+  return std::exchange(finished_, std::nullopt);
+}
+
+void Instrument::integrate_to(Instant t) {
+  if (!running_) return;
+  const Instant to = std::min(t, running_->close);
+  // Within a stretch the shutters do not change: cut it where one arrives.
+  std::array<Instant, 3> cuts{stage_.source_shutter().done, stage_.detector_shutter().done, to};
+  std::ranges::sort(cuts);
+  for (const Instant cut : cuts) {
+    if (cut <= running_->integrated_to || cut > to) continue;
+    running_->rate_integral += rate_integral(running_->integrated_to, cut);
+    running_->integrated_to = cut;
+  }
+}
+
+double Instrument::rate_integral(Instant from, Instant to) const {
+  const double length_s = scene_.scene_seconds(to - from);
+  StagePose at = pose(from);
+  if (!at.source_open || !at.detector_open) return 0.0;
+  if (!stage_.is_moving(from)) return length_s * light_path_.electron_rate(at);
+  constexpr int kPanels = 32;
+  const auto step = (to - from) / (2.0 * kPanels);  // half a panel
+  double sum = 0.0;
+  for (int panel = 0; panel < kPanels; ++panel) {
+    for (std::size_t k = 0; k < kNodes.size(); ++k) {
+      const auto after = std::chrono::duration_cast<Duration>(step * (2 * panel + 1 + kNodes[k]));
+      at.positions = pose(from + after).positions;
+      sum += kWeights[k] * light_path_.electron_rate(at);
+    }
+  }
+  return sum * length_s / (2.0 * kPanels);
+}
+
+void Instrument::finish_exposure() {
+  const Running run = *running_;
+  running_.reset();
+  const double from_s = scene_time_s(run.open);
+  const double to_s = scene_time_s(run.close);
+  stage_.close_gate(run.close, lamp_.monitor(from_s, to_s, memory_.exposures));
+  const double light = run.rate_integral * lamp_.mean(from_s, to_s);
+  const DetectorSpec& detector = scene_.detector;
+  finished_ = Exposure{.number = memory_.exposures,
+                       .open = run.open,
+                       .close = run.close,
+                       .light_electrons = after_nonlinearity(detector, light, truth_.nonlinearity()),
+                       .dark_electrons = detector.dark_dn_per_s * detector.electrons_per_dn * (to_s - from_s),
+                       .gain_db = run.gain_db};
+}
+
+StagePose Instrument::pose(Instant t) const {
+  StagePose pose{.last_move = stage_.moves(),
+                 .source_open = is_open(stage_.source_shutter(), t),
+                 .detector_open = is_open(stage_.detector_shutter(), t)};
+  for (const Axis a : stage::kAllAxes) {
+    pose.positions[stage::index_of(a)] = stage_.axis(a).position(t);
+    pose.last_moves[stage::index_of(a)] = stage_.axis(a).last_move();
+  }
+  return pose;
+}
+
+InstrumentMemory Instrument::memory(Instant now) const {
+  InstrumentMemory memory = memory_;
+  memory.stage = stage_.memory(now);
+  memory.scene_time_s = scene_time_s(now);
+  return memory;
+}
+
+}  // namespace gonio::sim

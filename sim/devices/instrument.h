@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "base/clock.h"
+#include "sim/devices/detector_noise.h"
+#include "sim/devices/stage_model.h"
+#include "sim/optics/lamp.h"
+#include "sim/optics/light_path.h"
+#include "sim/scene/scene.h"
+#include "sim/scene/truth.h"
+
+namespace gonio::sim {
+
+/// A place where the stage was when an exposure began: the station, and the three angles in hundredths of a degree.
+struct ExposedPlace {
+  Station station = Station::Between;
+  std::array<std::int32_t, 3> centidegrees{};  ///< theta_i, theta_r, phi_r
+  bool is_lit = false;                         ///< both shutters were open
+  friend auto operator<=>(const ExposedPlace&, const ExposedPlace&) = default;
+};
+
+/// What the instrument keeps from one run of the simulator to the next.
+struct InstrumentMemory {
+  StageMemory stage;
+  std::uint64_t exposures = 0;
+  std::uint64_t lit_exposures = 0;
+  double scene_time_s = 0.0;
+  std::map<ExposedPlace, std::uint64_t> places;  ///< exposures by place
+};
+
+/// Stage, lamp, sample and detector on one bench, without wires. The camera's exposure-active line goes to the stage,
+/// and the light of an exposure is integrated over the arms' motion in closed form. Wall time as argument; a call with
+/// an earlier time than the one before is taken as at that one. Copies nothing, allocates little. Threads: one at a
+/// time.
+class Instrument {
+ public:
+  Instrument(Scene scene, InstrumentMemory memory, Instant power_up);
+  Instrument(const Instrument&) = delete;
+  Instrument& operator=(const Instrument&) = delete;
+
+  /// Lets everything happen that is due, in its order.
+  void advance_to(Instant now);
+  /// When something happens by itself next.
+  [[nodiscard]] std::optional<Instant> next_event() const;
+
+  /// For commands: `advance_to` their instant first.
+  [[nodiscard]] StageModel& stage() { return stage_; }
+  [[nodiscard]] const StageModel& stage() const { return stage_; }
+
+  /// Begins an exposure of `duration` > 0 of wall time; false: one is under way.
+  bool start_exposure(Duration duration, double gain_db, Instant now);
+  [[nodiscard]] std::optional<Instant> exposure_end() const;
+  /// The last finished exposure, once.
+  [[nodiscard]] std::optional<Exposure> take_exposure(Instant now);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Truth& truth() const { return truth_; }
+  [[nodiscard]] double monitor_now(Instant now) const { return lamp_.monitor_now(scene_time_s(now)); }
+  [[nodiscard]] StagePose pose(Instant t) const;
+  [[nodiscard]] InstrumentMemory memory(Instant now) const;
+
+ private:
+  struct Running {
+    Instant open{};
+    Instant close{};
+    Instant integrated_to{};
+    double gain_db = 0.0;
+    double rate_integral = 0.0;  ///< electrons for lamp output 1
+  };
+  [[nodiscard]] double scene_time_s(Instant t) const;
+  void integrate_to(Instant t);
+  [[nodiscard]] double rate_integral(Instant from, Instant to) const;
+  void finish_exposure();
+
+  Scene scene_;
+  Truth truth_;
+  Lamp lamp_;
+  LightPath light_path_;
+  StageModel stage_;
+  Instant power_up_;
+  Instant now_;
+  InstrumentMemory memory_;
+  std::optional<Running> running_;
+  std::optional<Exposure> finished_;
+};
+
+}  // namespace gonio::sim

@@ -1,0 +1,60 @@
+#include "sim/devices/reading_level.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace gonio::sim {
+
+using stage::Axis;
+using stage::index_of;
+
+namespace {
+
+double carriage_of(const StageSpec& spec, Station station) {
+  switch (station) {
+    case Station::Sample:
+      return spec.sample_mm;
+    case Station::Reference:
+      return spec.reference_mm;
+    case Station::Trap:
+      return spec.trap_mm;
+    case Station::Between:
+      break;
+  }
+  return 0.5 * (spec.sample_mm + spec.reference_mm);
+}
+
+double slot_of(const Scene& scene, Wavelength wavelength) {
+  const auto distance = [&](const FilterSpec& f) { return std::abs((f.centroid - wavelength).si()); };
+  return std::ranges::min_element(scene.filters, {}, distance)->slot;
+}
+
+}  // namespace
+
+ReadingLevel::ReadingLevel(Scene scene)
+    : scene_(std::move(scene)), truth_(scene_), lamp_(scene_), light_path_(scene_, truth_) {}
+
+ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
+  assert(request.exposure > Duration::zero());
+  StagePose pose{.last_move = request.move, .source_open = true, .detector_open = !request.is_dark};
+  pose.positions[index_of(Axis::ThetaI)] = in_degrees(request.encoders.theta_i);
+  pose.positions[index_of(Axis::ThetaR)] = in_degrees(request.encoders.theta_r);
+  pose.positions[index_of(Axis::PhiR)] = in_degrees(request.encoders.phi_r);
+  pose.positions[index_of(Axis::PhiI)] = in_degrees(request.encoders.phi_i);
+  pose.positions[index_of(Axis::Carriage)] = carriage_of(scene_.stage, request.target);
+  pose.positions[index_of(Axis::FilterWheel)] = slot_of(scene_, request.wavelength);
+  pose.last_moves.fill(request.move);
+
+  const double length_s = scene_.scene_seconds(request.exposure);
+  const double to_s = request.at_scene_s + length_s;
+  const double light = light_path_.electron_rate(pose) * length_s * lamp_.mean(request.at_scene_s, to_s);
+  const DetectorSpec& detector = scene_.detector;
+  const Exposure exposure{.number = request.exposure_number,
+                          .light_electrons = after_nonlinearity(detector, light, truth_.nonlinearity()),
+                          .dark_electrons = detector.dark_dn_per_s * detector.electrons_per_dn * length_s};
+  return {.region = draw_region(detector, exposure, scene_.seed),
+          .monitor = lamp_.monitor(request.at_scene_s, to_s, request.exposure_number)};
+}
+
+}  // namespace gonio::sim
