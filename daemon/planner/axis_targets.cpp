@@ -1,0 +1,114 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/planner/planner.h"
+
+namespace gonio::daemon {
+
+namespace {
+
+using stage::Axis;
+
+// Encoders and lists carry rounding: a value so little beyond a limit stands on it.
+constexpr double kLimitSlack = 1e-9;
+
+bool is_within(const drivers::AxisConfig& axis, double position) {
+  return position >= axis.low - kLimitSlack && position <= axis.high + kLimitSlack;
+}
+
+Error beyond_limit(Axis axis, const drivers::AxisConfig& config, double position) {
+  const auto unit = stage::axis_unit(axis);
+  return Error{.code = ErrorCode::OutOfLimits,
+               .device = "stage",
+               .tried = fmt::format("move {} to {:.3f} {}", stage::axis_name(axis), position, unit),
+               .seen = fmt::format("target {:.3f} {}", position, unit),
+               .limit = fmt::format("{:.3f} to {:.3f} {}", config.low, config.high, unit)};
+}
+
+Result<double> within_limits(const Instrument& instrument, Axis axis, double position) {
+  const auto& config = instrument.stage.axis(axis);
+  if (!is_within(config, position)) return failure(beyond_limit(axis, config, position));
+  return std::clamp(position, config.low, config.high);
+}
+
+// The same azimuth by whole turns: as asked if it can be, else the nearest turn within the limits.
+Result<double> azimuth_within_limits(const Instrument& instrument, Axis axis, double position) {
+  const auto& config = instrument.stage.axis(axis);
+  for (const double turns : {0.0, -1.0, 1.0, -2.0, 2.0}) {
+    const double turned = position + 360.0 * turns;
+    if (is_within(config, turned)) return std::clamp(turned, config.low, config.high);
+  }
+  return failure(beyond_limit(axis, config, position));
+}
+
+Result<double> filter_slot(const Instrument& instrument, Wavelength wavelength) {
+  if (const Filter* filter = filter_for(instrument, wavelength)) return static_cast<double>(filter->slot);
+  std::string known;
+  for (const Filter& filter : instrument.filters) {
+    known += fmt::format("{}{:g}", known.empty() ? "" : ", ", in_nanometres(filter.centroid));
+  }
+  return failure(Error{.code = ErrorCode::InvalidInput,
+                       .device = "stage",
+                       .tried = "find the filter of a wavelength",
+                       .seen = fmt::format("{:g} nm", in_nanometres(wavelength)),
+                       .limit = fmt::format("filters with centroids at {} nm", known.empty() ? "no" : known)});
+}
+
+}  // namespace
+
+bool is_in_shadow(const Geometry& g, const Shadow& shadow) {
+  const double reach = (shadow.detector_head_radius + shadow.source_head_radius).si() /
+                       std::min(shadow.detector_arm, shadow.source_arm).si();
+  return phase_angle(g).si() < std::asin(std::min(1.0, reach));
+}
+
+Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelength, const Instrument& instrument) {
+  drivers::MotionTarget target{};
+  const auto put = [&target](Axis axis, const Result<double>& position) -> Result<void> {
+    if (!position) return failure(position.error());
+    target[stage::index_of(axis)] = *position;
+    return {};
+  };
+  GONIO_TRY(put(Axis::ThetaI, within_limits(instrument, Axis::ThetaI, in_degrees(g.theta_i))));
+  GONIO_TRY(put(Axis::ThetaR, within_limits(instrument, Axis::ThetaR, in_degrees(g.theta_r))));
+  GONIO_TRY(put(Axis::PhiR, azimuth_within_limits(instrument, Axis::PhiR, in_degrees(g.phi_r))));
+  GONIO_TRY(put(Axis::PhiI, azimuth_within_limits(instrument, Axis::PhiI, in_degrees(g.phi_i))));
+  GONIO_TRY(put(Axis::FilterWheel, filter_slot(instrument, wavelength)));
+  return target;
+}
+
+Result<void> check_move(const drivers::MotionTarget& target, const stage::PerAxis<double>& standing,
+                        const Instrument& instrument) {
+  stage::PerAxis<double> there = standing;
+  for (const Axis axis : stage::kAllAxes) {
+    const auto& asked = target[stage::index_of(axis)];
+    if (!asked) continue;
+    if (!std::isfinite(*asked)) {
+      return failure(Error{.code = ErrorCode::InvalidInput,
+                           .device = "stage",
+                           .tried = fmt::format("move {}", stage::axis_name(axis)),
+                           .seen = "a target that is not a number",
+                           .limit = "a finite number"});
+    }
+    const auto allowed = within_limits(instrument, axis, *asked);
+    if (!allowed) return failure(allowed.error());
+    there[stage::index_of(axis)] = *allowed;
+  }
+  const bool arms_move = target[0] || target[1] || target[2] || target[3];
+  const Geometry g{.theta_i = degrees(there[stage::index_of(Axis::ThetaI)]),
+                   .phi_i = degrees(there[stage::index_of(Axis::PhiI)]),
+                   .theta_r = degrees(there[stage::index_of(Axis::ThetaR)]),
+                   .phi_r = degrees(there[stage::index_of(Axis::PhiR)])};
+  if (!arms_move || !is_in_shadow(g, instrument.shadow)) return {};
+  const double xi_deg = in_degrees(phase_angle(g));
+  return failure(Error{.code = ErrorCode::Blocked,
+                       .device = "stage",
+                       .tried = fmt::format("move to theta_i {:.3f} deg, theta_r {:.3f} deg, phi_r {:.3f} deg",
+                                            in_degrees(g.theta_i), in_degrees(g.theta_r), in_degrees(g.phi_r)),
+                       .seen = fmt::format("phase angle {:.3f} deg, in the shadow of the detector's head", xi_deg),
+                       .limit = "outside of the keep-out about retro-reflection"});
+}
+
+}  // namespace gonio::daemon

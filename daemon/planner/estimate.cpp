@@ -1,0 +1,103 @@
+#include "daemon/planner/estimate.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "daemon/planner/planner.h"
+#include "drivers/motion/travel_time.h"
+
+namespace gonio::daemon {
+
+namespace {
+
+using stage::Axis;
+
+// Of one frame beyond its exposure: transfer, reduction, the look at the gate. Only the estimate uses it.
+constexpr Duration kReadTime = std::chrono::milliseconds(5);
+constexpr int kDarkFrames = 4;  // of each rung, in the estimate
+
+class Walk {
+ public:
+  Walk(const api::Plan& plan, const Instrument& instrument) : plan_(plan), instrument_(instrument) {
+    for (const Axis axis : stage::kAllAxes) {
+      const auto& config = instrument.stage.axis(axis);
+      standing_[stage::index_of(axis)] = std::clamp(0.0, config.low, config.high);
+    }
+    const double longest = std::min(in_seconds(instrument.detector.longest_exposure), in_seconds(plan.max_time));
+    const double shortest = in_seconds(instrument.detector.shortest_exposure);
+    exposure_ = seconds(std::sqrt(shortest * std::max(shortest, longest)));
+    dark_exposures_ = seconds(2.0 * std::max(shortest, longest));  // a ladder by twos adds up to twice its longest
+    rungs_ = 1 + static_cast<int>(std::log2(std::max(1.0, longest / shortest)));
+    visit_dark();
+  }
+
+  void visit(const ScanPoint& point, Length carriage) {
+    auto target = axis_targets(point.geometry, point.wavelength, instrument_);
+    assert(target);  // the planner has checked every direction
+    (*target)[stage::index_of(Axis::Carriage)] = in_millimetres(carriage);
+    const StepTime step = step_time(instrument_, standing_, *target);
+    time_.move += step.move;
+    time_.settle += step.settle;
+    time_.expose += exposure_;
+    time_.read += kReadTime;
+    for (std::size_t a = 0; a < stage::kAxisCount; ++a) standing_[a] = (*target)[a].value_or(standing_[a]);
+    if (plan_.dark_every > Duration::zero() && time_.total() - last_dark_ >= plan_.dark_every) visit_dark();
+  }
+
+  void visit_dark() {
+    time_.expose += kDarkFrames * dark_exposures_;
+    time_.read += kDarkFrames * rungs_ * kReadTime;
+    last_dark_ = time_.total();
+  }
+
+  [[nodiscard]] const TimeParts& time() const { return time_; }
+
+ private:
+  const api::Plan& plan_;
+  const Instrument& instrument_;
+  stage::PerAxis<double> standing_{};
+  Duration exposure_{};
+  Duration dark_exposures_{};
+  int rungs_ = 1;
+  TimeParts time_;
+  Duration last_dark_{};
+};
+
+}  // namespace
+
+Duration travel_time(const drivers::AxisConfig& axis, double way) {
+  return drivers::travel_time(std::abs(way), axis.speed, axis.acceleration);
+}
+
+StepTime step_time(const Instrument& instrument, const stage::PerAxis<double>& from, const drivers::MotionTarget& to) {
+  StepTime step;
+  for (const Axis axis : stage::kAllAxes) {
+    const std::size_t a = stage::index_of(axis);
+    if (!to[a] || *to[a] == from[a]) continue;
+    step.move = std::max(step.move, travel_time(instrument.stage.axis(axis), *to[a] - from[a]));
+    step.settle = std::max(step.settle, instrument.stage.axis(axis).settle);
+  }
+  return step;
+}
+
+TimeParts estimate(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned) {
+  Walk walk(plan, instrument);
+  const Duration pass = plan.block / 2;  // there and back: partners lie within the whole block
+  for (std::size_t first = 0; first < planned.order.size();) {
+    const Duration started = walk.time().total();
+    std::size_t end = first;
+    while (end < planned.order.size() && (end == first || walk.time().total() - started < pass)) {
+      walk.visit(planned.points[static_cast<std::size_t>(planned.order[end])], instrument.carriage.sample);
+      ++end;
+    }
+    for (std::size_t k = end; k-- > first;) {
+      walk.visit(planned.points[static_cast<std::size_t>(planned.order[k])], instrument.carriage.reference);
+    }
+    first = end;
+  }
+  walk.visit_dark();
+  return walk.time();
+}
+
+}  // namespace gonio::daemon

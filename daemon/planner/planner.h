@@ -1,0 +1,32 @@
+#pragma once
+
+#include "base/result.h"
+#include "daemon/config/instrument.h"
+#include "daemon/planner/planned_scan.h"
+#include "drivers/stage.h"
+#include "protocol/api/plan.h"
+
+namespace gonio::daemon {
+
+/// Grows whenever the same plan and instrument could give other points or another order.
+inline constexpr int kPlannerVersion = 1;
+
+/// The points of a plan on an instrument, in the order of measurement: a pure function, for the dry run and for the
+/// run. Errors: OutOfLimits (axis, value, limit, the plan's field), AllPointsBlocked, InvalidInput (a wavelength
+/// without a filter, more than 10^7 points).
+[[nodiscard]] Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument);
+
+/// Whether the detector's head stands in the source's beam: xi < asin((r_d + r_s) / min(R_d, R_s)).
+[[nodiscard]] bool is_in_shadow(const Geometry& g, const Shadow& shadow);
+
+/// Where the axes of a point stand: the four angles, with phi by whole turns into its axis' limits, and the filter.
+/// Errors: OutOfLimits, InvalidInput (no filter).
+[[nodiscard]] Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelength,
+                                                         const Instrument& instrument);
+
+/// Checks one move asked for by hand from where the stage stands. Errors: OutOfLimits, Blocked (it would end in the
+/// shadow).
+[[nodiscard]] Result<void> check_move(const drivers::MotionTarget& target, const stage::PerAxis<double>& standing,
+                                      const Instrument& instrument);
+
+}  // namespace gonio::daemon

@@ -1,0 +1,204 @@
+#include "daemon/planner/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tests/daemon/support/bench_instrument.h"
+
+namespace gonio::daemon {
+namespace {
+
+using stage::Axis;
+using test::bench_instrument;
+using test::bench_plan;
+
+TEST(Planner, TheProductOfTheListsHasThetaISlowestAndPhiRFastest) {
+  const auto planned = expand(bench_plan({10, 20}, {30, 40}, {90, 180}), bench_instrument());
+
+  ASSERT_TRUE(planned) << describe(planned.error());
+  ASSERT_EQ(planned->points.size(), 8U);
+  EXPECT_NEAR(in_degrees(planned->points[1].geometry.phi_r), 180.0, 1e-12);
+  EXPECT_NEAR(in_degrees(planned->points[2].geometry.theta_r), 40.0, 1e-12);
+  EXPECT_NEAR(in_degrees(planned->points[4].geometry.theta_i), 20.0, 1e-12);
+  EXPECT_EQ(planned->asked, 8);
+  EXPECT_EQ(planned->merged, 0);
+  EXPECT_EQ(planned->items, 16);
+}
+
+TEST(Planner, MergesAzimuthsAtTheDetectorsPoleAndCountsThem) {
+  const auto planned = expand(bench_plan({30}, {0, 45}, {0, 90, 180}), bench_instrument());
+
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->asked, 6);
+  EXPECT_EQ(planned->merged, 2);
+  EXPECT_EQ(planned->points.size(), 4U);
+}
+
+TEST(Planner, MergesAzimuthsAtNormalIncidenceOnlyForAnIsotropicSample) {
+  api::Plan plan = bench_plan({0}, {45}, {0, 90, 180});
+
+  const auto isotropic = expand(plan, bench_instrument());
+  plan.isotropic = false;
+  const auto anisotropic = expand(plan, bench_instrument());
+
+  ASSERT_TRUE(isotropic && anisotropic);
+  EXPECT_EQ(isotropic->points.size(), 1U);
+  EXPECT_EQ(isotropic->merged, 2);
+  EXPECT_EQ(anisotropic->points.size(), 3U);
+  EXPECT_EQ(anisotropic->merged, 0);
+}
+
+TEST(Planner, MergesAnAzimuthWithTheSameOneATurnLater) {
+  const auto planned = expand(bench_plan({30}, {45}, {0, 180, 360}), bench_instrument());
+
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->points.size(), 2U);
+  EXPECT_EQ(planned->merged, 1);
+}
+
+TEST(Planner, MarksPointsInTheShadowAndOrdersThemLast) {
+  // Keep-out by hand: asin((20 + 20) / 500) = 4.588 deg; at 30/30 the phase angle for phi = 0 is 0, for 26 deg 4 deg.
+  const auto planned = expand(bench_plan({30}, {26, 30, 35}, {0, 90}), bench_instrument());
+
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->blocked, 2);
+  EXPECT_EQ(planned->items, 8);
+  EXPECT_EQ(planned->order.size(), 4U);
+  for (const ScanPoint& p : planned->points) {
+    const bool near_retro = in_degrees(p.geometry.phi_r) == 0.0 && in_degrees(p.geometry.theta_r) < 34.0;
+    EXPECT_EQ(p.blocked, near_retro) << p.index;
+    EXPECT_EQ(p.rank >= 4, near_retro) << p.index;
+  }
+}
+
+TEST(Planner, RefusesAPlanWithEveryPointBlocked) {
+  const auto planned = expand(bench_plan({30}, {30}, {0}), bench_instrument());
+
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::AllPointsBlocked);
+}
+
+TEST(Planner, RefusesAnAngleBeyondItsAxisAndNamesAxisValueLimitAndField) {
+  const auto planned = expand(bench_plan({30}, {0, 97.2}, {90}), bench_instrument());
+
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::OutOfLimits);
+  EXPECT_EQ(planned.error().tried, "move theta_r to 97.200 deg");
+  EXPECT_EQ(planned.error().seen, "target 97.200 deg");
+  EXPECT_EQ(planned.error().limit, "0.000 to 85.000 deg");
+  ASSERT_TRUE(planned.error().where);
+  EXPECT_EQ(planned.error().where->field, "geometry.theta_r_deg");
+}
+
+TEST(Planner, RefusesAWavelengthWithoutAFilterAndNamesThoseThereAre) {
+  api::Plan plan = bench_plan({30}, {0}, {90});
+  plan.wavelengths = {nanometres(700.0)};
+
+  const auto planned = expand(plan, bench_instrument());
+
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(planned.error().seen, "700 nm");
+  EXPECT_EQ(planned.error().where->field, "geometry.wavelength_nm");
+  EXPECT_NE(planned.error().limit.find("568"), std::string::npos);
+}
+
+TEST(Planner, RefusesMorePointsThanAnyScanCanHave) {
+  const std::vector<double> many(4000, 10.0);
+
+  const auto planned = expand(bench_plan({30}, many, many), bench_instrument());
+
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::InvalidInput);
+}
+
+TEST(Planner, TurnsAnAzimuthIntoItsAxis) {
+  const Geometry g{.theta_i = degrees(30), .theta_r = degrees(10), .phi_r = degrees(345)};
+
+  const auto target = axis_targets(g, nanometres(568), bench_instrument());
+
+  ASSERT_TRUE(target);
+  EXPECT_NEAR(*(*target)[stage::index_of(Axis::PhiR)], -15.0, 1e-9);
+  EXPECT_EQ(*(*target)[stage::index_of(Axis::FilterWheel)], 1.0);
+}
+
+TEST(Planner, FastestIsNoSlowerThanAsWrittenAndVisitsTheSamePoints) {
+  api::Plan plan = bench_plan({0, 30, 60}, {0, 20, 40, 60}, {30, 60, 90, 120, 150, 180});
+  const auto fastest = expand(plan, bench_instrument());
+  plan.order = api::OrderStrategy::AsWritten;
+  const auto written = expand(plan, bench_instrument());
+
+  ASSERT_TRUE(fastest && written);
+  EXPECT_LT(fastest->estimate.move, written->estimate.move);
+  EXPECT_EQ(std::set<std::int32_t>(fastest->order.begin(), fastest->order.end()),
+            std::set<std::int32_t>(written->order.begin(), written->order.end()));
+  EXPECT_TRUE(std::is_sorted(written->order.begin(), written->order.end()));
+}
+
+TEST(Planner, FastestMovesOneAxisToANeighbourAtEachStep) {
+  const auto planned = expand(bench_plan({10, 30}, {20, 40, 60}, {90, 120, 150}), bench_instrument());
+
+  ASSERT_TRUE(planned);
+  for (std::size_t k = 1; k < planned->order.size(); ++k) {
+    const Geometry& a = planned->points[static_cast<std::size_t>(planned->order[k - 1])].geometry;
+    const Geometry& b = planned->points[static_cast<std::size_t>(planned->order[k])].geometry;
+    const int changed = (a.theta_i != b.theta_i) + (a.theta_r != b.theta_r) + (a.phi_r != b.phi_r);
+    EXPECT_EQ(changed, 1) << "step " << k;
+  }
+}
+
+TEST(Planner, RandomOrderFollowsItsSeedAlone) {
+  api::Plan plan = bench_plan({30}, {10, 20, 40, 50, 60}, {60, 90, 120, 150});
+  plan.order = api::OrderStrategy::Random;
+  plan.order_seed = 11;
+  const auto a = expand(plan, bench_instrument());
+  const auto again = expand(plan, bench_instrument());
+  plan.order_seed = 12;
+  const auto b = expand(plan, bench_instrument());
+
+  ASSERT_TRUE(a && again && b);
+  EXPECT_EQ(a->order, again->order);
+  EXPECT_NE(a->order, b->order);
+}
+
+TEST(Planner, TheEstimateCountsEachMoveOfTheWayAndBothTargets) {
+  // By hand: one point at theta_i 30, theta_r 0, phi 0. The source arm takes 30/20 + 20/40 = 2 s, the filter wheel one
+  // slot at 2 slot/s with 4 slot/s^2 1 s beside it; then the carriage 120 mm at 100 mm/s with 200 mm/s^2: 1.7 s. Two
+  // settles of 20 ms.
+  const auto planned = expand(bench_plan({30}, {0}, {0}), bench_instrument());
+
+  ASSERT_TRUE(planned);
+  EXPECT_NEAR(in_seconds(planned->estimate.move), 3.7, 1e-6);
+  EXPECT_NEAR(in_seconds(planned->estimate.settle), 0.04, 1e-9);
+}
+
+TEST(Planner, AMoveByHandIntoTheShadowIsBlocked) {
+  stage::PerAxis<double> standing{};
+  standing[stage::index_of(Axis::ThetaI)] = 30.0;
+  drivers::MotionTarget target{};
+  target[stage::index_of(Axis::ThetaR)] = 28.0;
+
+  const auto into = check_move(target, standing, bench_instrument());
+  target[stage::index_of(Axis::PhiR)] = 90.0;
+  const auto beside = check_move(target, standing, bench_instrument());
+
+  ASSERT_FALSE(into);
+  EXPECT_EQ(into.error().code, ErrorCode::Blocked);
+  EXPECT_TRUE(beside);
+}
+
+TEST(Planner, AMoveByHandBeyondALimitIsRefused) {
+  drivers::MotionTarget target{};
+  target[stage::index_of(Axis::Carriage)] = 300.0;
+
+  const auto refused = check_move(target, {}, bench_instrument());
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::OutOfLimits);
+  EXPECT_EQ(refused.error().limit, "-1.000 to 250.000 mm");
+}
+
+}  // namespace
+}  // namespace gonio::daemon
