@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,23 +9,27 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "calibration/raw_reading.h"
+#include "daemon/sequencer/command.h"
+#include "daemon/store/records.h"
 #include "drivers/detector.h"
 #include "drivers/stage.h"
-#include "daemon/store/records.h"
 
 namespace gonio::daemon {
 
-/// Pairs a request with its answer. An answer to a request that was withdrawn is recognised and dropped.
+/// Pairs a request with its one answer. Every request is answered, within its own deadline, also when it failed.
+/// The sequencer has at most one stage request, one detector request and a few commits open at a time; it never
+/// withdraws one: an answer that it no longer wants is awaited, then dropped.
 using Ticket = std::uint64_t;
 
-// ---- what the sequencer asks for (to the device, store and halt threads) ----
+// ---- what the sequencer asks for (to the device and store threads) ----
 
-/// Move, and answer when every named axis has stayed in its window for its settle time, or why not.
+/// Move, and answer when every named axis has stayed in its window for its settle time, or why not. Without an axis:
+/// only the shutters, and the state after them.
 struct MoveTo {
   Ticket ticket = 0;
   drivers::Epoch epoch = 0;
   drivers::MotionTarget target;
-  std::optional<bool> source_shutter_open;    ///< set along with the move, before it counts as done
+  std::optional<bool> source_shutter_open;  ///< set along with the move; it counts as done when they stand as asked
   std::optional<bool> detector_shutter_open;
 };
 /// Home all axes, and answer when done.
@@ -43,8 +46,8 @@ struct ResetStage {
 struct LookAtStage {
   Ticket ticket = 0;
 };
-/// Wait until the stage's gate has counted `after + 1` and has closed; answers with the state that holds the gate record.
-/// `expected` is how long the exposure lasts: the first look is then, and the deadline follows from it.
+/// Wait until the stage's gate has counted `after + 1` and has closed; answers with the state that holds the gate
+/// record. `expected` is how long the exposure lasts: the first look is then, and the deadline follows from it.
 struct WatchGate {
   Ticket ticket = 0;
   std::uint32_t after = 0;
@@ -61,24 +64,31 @@ struct TakeFrame {
 struct PrepareDetector {
   Ticket ticket = 0;
 };
-/// Make this durable, as one transaction.
+/// Make this durable, as one transaction. In the order of asking.
 struct Commit {
   Ticket ticket = 0;
   StoreTransaction transaction;
 };
+/// Read the scans that are not over.
+struct LoadUnfinished {
+  Ticket ticket = 0;
+};
 
-using Request = std::variant<MoveTo, Home, ResetStage, LookAtStage, WatchGate, TakeFrame, PrepareDetector, Commit>;
+using StageRequest = std::variant<MoveTo, Home, ResetStage, LookAtStage, WatchGate>;
+using DetectorRequest = std::variant<TakeFrame, PrepareDetector>;
+using StoreRequest = std::variant<Commit, LoadUnfinished>;
+using Request = std::variant<StageRequest, DetectorRequest, StoreRequest>;
 
 // ---- what the sequencer is told ----
 
-/// The answer to MoveTo, Home, ResetStage, LookAtStage, WatchGate.
+/// The answer to every StageRequest.
 struct StageAnswer {
   Ticket ticket = 0;
   Result<drivers::StageState> state;
 };
 struct FrameSummary {
   calibration::RegionMoments region;
-  drivers::ExposureSettings settings;   ///< as read back
+  drivers::ExposureSettings settings;  ///< as read back
   std::uint64_t frame_id = 0;
   std::uint64_t camera_time_ns = 0;
   double temperature_c = 0.0;
@@ -93,16 +103,23 @@ struct DetectorAnswer {
   Ticket ticket = 0;
   Result<drivers::DetectorIdentity> detector;
 };
-/// The answer to Commit: the ids given, and the committed events, in order, ready to publish.
+/// The answer to Commit: what was made, and the committed events in order. The store's thread publishes them itself.
 struct CommitAnswer {
   Ticket ticket = 0;
   Result<CommitReceipt> receipt;
 };
-/// A command of a client; `reply` gets the outcome once (see CommandReply). Verbs in daemon/sequencer/command.h.
+/// The answer to LoadUnfinished.
+struct UnfinishedAnswer {
+  Ticket ticket = 0;
+  Result<std::vector<UnfinishedScan>> scans;
+};
+/// STOP was given, and the halt is on the wire (or failed: the stage's heartbeat then stops it).
 struct StopHappened {
   drivers::Epoch epoch = 0;  ///< the new one
   std::string who;
 };
-struct Tick {};
+
+using SequencerMessage =
+    std::variant<Command, StageAnswer, FrameAnswer, DetectorAnswer, CommitAnswer, UnfinishedAnswer, StopHappened>;
 
 }  // namespace gonio::daemon

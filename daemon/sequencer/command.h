@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "daemon/store/records.h"
+#include "drivers/stage.h"
+
+namespace gonio::daemon {
+
+/// Names a command, so that its reply finds the client that waits. Given by the sender, unique while the daemon runs.
+using CommandId = std::uint64_t;
+
+/// Accepts a scan. The sender has parsed and expanded the plan (the planner's code: the dry run's). instrument_text and
+/// instrument_hash are the daemon's own. Answered when the scan is durable.
+struct SubmitScan {
+  NewScan scan;
+};
+/// Waits after the item in hand, or (`now`) drops it.
+struct PauseScan {
+  ScanId scan = 0;
+  bool now = false;
+  std::string reason;
+};
+/// Clears the holds and goes on after preparing anew. Refused while the stage is stopped (reset it first).
+struct ResumeScan {
+  ScanId scan = 0;
+};
+/// Ends early with data kept: closing dark, then parked.
+struct FinishScan {
+  ScanId scan = 0;
+};
+/// Ends at once; what was accepted stays.
+struct AbortScan {
+  ScanId scan = 0;
+  std::string reason;
+};
+/// Gives up the item in hand (and its partner), recorded.
+struct SkipItemInHand {
+  ScanId scan = 0;
+};
+/// By hand, while no scan runs (none active, or the active one holds). Answered when the axes stand.
+struct MoveStage {
+  drivers::MotionTarget target;
+  std::optional<bool> source_shutter_open;
+  std::optional<bool> detector_shutter_open;
+};
+struct HomeStage {};
+/// Clears STOP, heartbeat trip and faults. Moves nothing, and resumes nothing.
+struct ClearStage {};
+
+using Verb = std::variant<SubmitScan, PauseScan, ResumeScan, FinishScan, AbortScan, SkipItemInHand, MoveStage,
+                          HomeStage, ClearStage>;
+
+struct Command {
+  CommandId id = 0;
+  std::string who;  ///< "uid:1000", a token's name, or "local"
+  Verb verb;
+};
+
+/// The one answer to a command. `scan` is the scan concerned, 0 for the stage's.
+/// Errors: WrongState (with the state and what is allowed in it), NotFound, Busy, OutOfLimits, Blocked, store and
+/// device errors.
+struct CommandDone {
+  ScanId scan = 0;
+  bool existed = false;  ///< SubmitScan: the idempotency key was known; `scan` is the one it made then
+};
+struct CommandReply {
+  CommandId id = 0;
+  Result<CommandDone> result;
+};
+
+/// How far a scan is, with an honest estimate.
+struct Progress {
+  ScanId scan = 0;
+  std::string name;
+  ScanState state = ScanState::Queued;
+  std::vector<Hold> holds;
+  std::int64_t points = 0;
+  std::int64_t blocked = 0;
+  std::int64_t merged = 0;
+  std::int64_t items = 0;
+  std::int64_t accepted = 0;
+  std::int64_t skipped = 0;
+  std::int64_t failed_attempts = 0;  ///< since the daemon started
+  std::optional<ItemKey> in_hand;
+  TimeParts spent;                    ///< of attempts and visits
+  std::optional<Duration> remaining;  ///< from measured times; none before the first item of this run
+  Duration u_remaining{};             ///< standard uncertainty of it
+};
+
+/// What `GET status` shows of the sequencer: a value, copied out after each message.
+struct SequencerStatus {
+  std::optional<Progress> active;
+  std::vector<ScanId> queued;
+  std::string doing;                 ///< "exposing", "moving", "idle"
+  bool stage_stopped = false;        ///< STOP stands: reset needed
+  std::optional<Error> store_error;  ///< the store failed: nothing goes on until a resume reloads it
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace gonio::daemon {
+
+/// How api::OnItemError and api::OnRestart are stored, in the order of their enumerators.
+inline constexpr std::array<std::string_view, 3> kOnItemErrorNames{"skip", "hold", "fail"};
+inline constexpr std::array<std::string_view, 2> kOnRestartNames{"resume", "hold"};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,57 @@
+#include "daemon/store/records.h"
+
+#include <algorithm>
+
+namespace gonio::daemon {
+
+namespace {
+
+using calibration::Target;
+
+constexpr std::array<std::string_view, 10> kStateNames{"queued", "preparing",      "running", "holding", "finishing",
+                                                       "done",   "finished-early", "aborted", "failed",  "interrupted"};
+constexpr std::array<std::string_view, 6> kHoldNames{"operator", "lamp", "door", "device", "disk", "restart"};
+constexpr std::array<std::string_view, 3> kTargetNames{"sample", "reference", "dark"};
+
+// The enum whose name stands at this place of the list.
+template <class E, std::size_t N>
+std::optional<E> from_name(const std::array<std::string_view, N>& names, std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<E>(found - names.begin());
+}
+
+}  // namespace
+
+std::string_view scan_state_name(ScanState state) {
+  return kStateNames[static_cast<std::size_t>(state)];
+}
+std::optional<ScanState> scan_state_from_name(std::string_view name) {
+  return from_name<ScanState>(kStateNames, name);
+}
+
+std::string_view hold_name(HoldName name) {
+  return kHoldNames[static_cast<std::size_t>(name)];
+}
+std::optional<HoldName> hold_from_name(std::string_view name) {
+  return from_name<HoldName>(kHoldNames, name);
+}
+
+std::string_view target_name(Target target) {
+  return kTargetNames[static_cast<std::size_t>(target)];
+}
+std::optional<Target> target_from_name(std::string_view name) {
+  return from_name<Target>(kTargetNames, name);
+}
+
+ScanPolicy policy_of(const api::Plan& plan) {
+  return ScanPolicy{.target_snr = plan.target_snr,
+                    .max_time = plan.max_time,
+                    .block = plan.block,
+                    .dark_every = plan.dark_every,
+                    .item_retries = plan.item_retries,
+                    .on_item_error = plan.on_item_error,
+                    .on_restart = plan.on_restart};
+}
+
+}  // namespace gonio::daemon

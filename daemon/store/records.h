@@ -1,0 +1,251 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "calibration/raw_reading.h"
+#include "daemon/planner/planned_scan.h"
+#include "drivers/detector.h"
+#include "drivers/stage.h"
+#include "protocol/api/plan.h"
+
+namespace gonio::daemon {
+
+using ScanId = std::int64_t;  ///< > 0
+
+/// The life of a scan (DESIGN 5). Names as stored and shown: "queued", "finished-early".
+enum class ScanState : std::uint8_t {
+  Queued,
+  Preparing,
+  Running,
+  Holding,
+  Finishing,
+  Done,
+  FinishedEarly,
+  Aborted,
+  Failed,
+  Interrupted,
+};
+inline constexpr std::array<ScanState, 10> kAllScanStates{
+    ScanState::Queued, ScanState::Preparing,     ScanState::Running, ScanState::Holding, ScanState::Finishing,
+    ScanState::Done,   ScanState::FinishedEarly, ScanState::Aborted, ScanState::Failed,  ScanState::Interrupted};
+[[nodiscard]] std::string_view scan_state_name(ScanState state);
+[[nodiscard]] std::optional<ScanState> scan_state_from_name(std::string_view name);
+[[nodiscard]] constexpr bool is_over(ScanState s) {
+  return s == ScanState::Done || s == ScanState::FinishedEarly || s == ScanState::Aborted || s == ScanState::Failed;
+}
+
+/// Why a scan waits. Names: "operator", "lamp", "door", "device", "disk", "restart".
+enum class HoldName : std::uint8_t { Operator, Lamp, Door, Device, Disk, Restart };
+[[nodiscard]] std::string_view hold_name(HoldName name);
+[[nodiscard]] std::optional<HoldName> hold_from_name(std::string_view name);
+
+struct Hold {
+  HoldName name = HoldName::Operator;
+  std::string owner;  ///< who asked for it, or the device
+  std::string reason;
+  Instant since{};  ///< as this boot counts
+};
+
+/// "sample", "reference", "dark".
+[[nodiscard]] std::string_view target_name(calibration::Target target);
+[[nodiscard]] std::optional<calibration::Target> target_from_name(std::string_view name);
+
+/// The unit of acceptance.
+struct ItemKey {
+  std::int32_t point = 0;
+  calibration::Target target = calibration::Target::Sample;
+  friend auto operator<=>(const ItemKey&, const ItemKey&) = default;
+};
+
+/// One detector result, raw: a row of `reading`.
+struct ReadingRecord {
+  bool used = true;  ///< false: a probe, or saturated; kept, never calibrated with
+  calibration::RegionMoments region;
+  drivers::ExposureSettings settings;
+  std::uint64_t camera_frame_id = 0;
+  std::uint64_t camera_time_ns = 0;
+  double camera_temperature_c = 0.0;
+  std::uint32_t gate_count = 0;  ///< the stage's number of this exposure
+  stage::PerAxis<std::int32_t> open_counts{};
+  stage::PerAxis<std::int32_t> close_counts{};
+  double monitor_mean = 0.0;
+  double monitor_se = 0.0;
+  std::uint32_t monitor_samples = 0;
+  double lamp_temperature_c = 0.0;
+  double detector_temperature_c = 0.0;
+  double room_temperature_c = 0.0;
+  double humidity_percent = 0.0;
+  Instant at{};  ///< middle of the exposure
+};
+
+// ---- what can be written ----
+
+/// How a scan is measured once its points are fixed: the plan's parts that the sequencer goes by, stored with the scan.
+struct ScanPolicy {
+  double target_snr = 300.0;
+  Duration max_time{};
+  Duration block{};
+  Duration dark_every{};
+  int item_retries = 2;
+  api::OnItemError on_item_error = api::OnItemError::Skip;
+  api::OnRestart on_restart = api::OnRestart::Resume;
+  friend bool operator==(const ScanPolicy&, const ScanPolicy&) = default;
+};
+[[nodiscard]] ScanPolicy policy_of(const api::Plan& plan);
+
+/// Accepts a scan, with everything that it will ever be recomputed from. Its points become rows here.
+/// An idempotency key that is there already writes nothing; the receipt then names the scan that has it.
+struct NewScan {
+  std::string idempotency_key;  ///< empty: none
+  std::string name;
+  std::string campaign;  ///< may be empty
+  std::string sample;
+  bool isotropic = true;
+  ScanPolicy policy;
+  std::string plan_text;  ///< as sent
+  std::string plan_file;  ///< the user's name for it
+  std::string reference_serial;
+  std::string reference_text;   ///< reference/*.toml, as used
+  std::string instrument_text;  ///< instrument.toml, as used
+  std::string instrument_hash;  ///< of what counts: addresses are not part of it
+  PlannedScan planned;
+  std::string who;
+};
+
+/// Writes `state`; what was asked for at the end of it stays known across a restart.
+struct ScanTransition {
+  ScanId scan = 0;
+  ScanState from = ScanState::Queued;
+  ScanState to = ScanState::Queued;
+  bool finish_asked = false;
+  std::string who;
+  std::string reason;  ///< becomes the scan's outcome when `to` is an end
+};
+struct AddHold {
+  ScanId scan = 0;
+  Hold hold;
+};
+struct ClearHolds {
+  ScanId scan = 0;
+  std::string who;
+};
+
+enum class AttemptOutcome : std::uint8_t { Accepted, Failed, Dropped };
+/// One try at an item with all its readings. `Accepted` also writes the item; a second acceptance of an item is refused
+/// by the schema and fails the transaction.
+struct NewAttempt {
+  ScanId scan = 0;
+  ItemKey item;
+  AttemptOutcome outcome = AttemptOutcome::Accepted;
+  std::optional<Error> error;  ///< of a failed one
+  TimeParts time;
+  std::vector<ReadingRecord> readings;
+  Instant started{};
+};
+/// Decides an item without a reading.
+struct SkipItem {
+  ScanId scan = 0;
+  ItemKey item;
+  std::string who;
+  std::string reason;
+};
+/// A visit of the dark with all its readings.
+struct NewVisit {
+  ScanId scan = 0;
+  TimeParts time;
+  std::vector<ReadingRecord> readings;
+  Instant started{};
+};
+
+/// One BRDF value as stored. Values in sr^-1.
+struct BrdfRow {
+  std::int32_t point = 0;
+  double value_per_sr = 0.0;
+  double u_random_per_sr = 0.0;
+  double effective_dof = 0.0;  ///< of the whole; +infinity is stored as 0: "no less than normal"
+  std::uint32_t flags = 0;
+  Geometry reported;                         ///< the directions that the value holds for
+  std::vector<double> sensitivities_per_sr;  ///< c_k u_k of each shared component, in the calibration's order
+};
+/// The BRDF of a scan by one calibration. A scan has as many as it was computed; the newest counts.
+struct NewBrdf {
+  ScanId scan = 0;
+  std::string code_version;
+  std::string inputs_json;                   ///< certificate, models: what it was computed from
+  std::vector<std::string> component_names;  ///< of `sensitivities_per_sr`
+  std::vector<BrdfRow> rows;
+};
+/// Who changed what.
+struct AuditEntry {
+  std::string who;
+  std::string action;
+  std::string detail;
+};
+
+using StoreWrite =
+    std::variant<NewScan, ScanTransition, AddHold, ClearHolds, NewAttempt, SkipItem, NewVisit, NewBrdf, AuditEntry>;
+
+/// What clients are told, once it is durable.
+struct NewEvent {
+  std::string kind;  ///< "item-accepted"; the list is in daemon/sequencer/README.md
+  int kind_version = 1;
+  ScanId scan = 0;  ///< 0: of no scan, or of the scan made in this transaction
+  std::string who;
+  std::string json;  ///< an object
+};
+
+/// Written whole or not at all, in this order.
+struct StoreTransaction {
+  Instant at{};
+  std::vector<StoreWrite> writes;
+  std::vector<NewEvent> events;
+};
+
+// ---- what comes back ----
+
+struct EventRecord {
+  std::int64_t number = 0;  ///< gapless, from 1
+  std::string kind;
+  int kind_version = 1;
+  ScanId scan = 0;
+  std::string who;
+  UtcTime utc{};
+  std::string json;
+};
+
+struct CommitReceipt {
+  ScanId new_scan = 0;   ///< of NewScan
+  bool existed = false;  ///< NewScan found its idempotency key: nothing of the transaction was written
+  std::vector<EventRecord> events;
+};
+
+/// A scan that is not over, as the store has it.
+struct UnfinishedScan {
+  ScanId id = 0;
+  ScanState state = ScanState::Queued;
+  bool finish_asked = false;
+  std::string name;
+  ScanPolicy policy;
+  bool isotropic = true;
+  std::string instrument_hash;
+  std::vector<ScanPoint> points;  ///< by index
+  std::vector<std::int32_t> order;
+  std::int64_t merged = 0;
+  std::vector<ItemKey> accepted;
+  std::vector<ItemKey> skipped;
+  std::vector<std::pair<ItemKey, int>> attempts;  ///< how many, of items that are not decided
+  std::vector<Hold> holds;
+  std::vector<Duration> exposures_used;  ///< rungs that accepted readings used: each needs its closing dark
+  bool dark_owed = false;                ///< items were accepted after the last dark visit
+  TimeParts spent;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,390 @@
+#include "daemon/store/store_reader.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "daemon/store/database.h"
+#include "daemon/store/schema.h"
+#include "daemon/store/unfinished_scans.h"
+
+namespace gonio::daemon {
+
+namespace {
+
+using calibration::RawFrame;
+using calibration::RawReading;
+using calibration::Target;
+using stage::Axis;
+
+Error no_such_scan(ScanId id) {
+  return Error{.code = ErrorCode::NotFound,
+               .device = "store",
+               .tried = "read scan " + std::to_string(id),
+               .seen = "there is no scan of this number"};
+}
+
+UtcTime utc_from(std::int64_t ns) {
+  return UtcTime(Duration(ns));
+}
+
+// What one reading row is, before rows are put together.
+struct ReadingRow {
+  std::int64_t owner = 0;  // RawReading::visit_id
+  Target target = Target::Dark;
+  std::optional<std::int32_t> point;
+  double wavelength_nm = 0.0;
+  std::int64_t id = 0;
+  Instant at{};
+  RawFrame frame;
+};
+
+Geometry geometry_from_counts(const Statement& row, int first, const drivers::StageConfig& stage) {
+  const auto angle = [&](Axis axis) {
+    return degrees(drivers::position_of(stage, axis, row.integer(first + static_cast<int>(stage::index_of(axis)))));
+  };
+  return {.theta_i = angle(Axis::ThetaI),
+          .phi_i = angle(Axis::PhiI),
+          .theta_r = angle(Axis::ThetaR),
+          .phi_r = angle(Axis::PhiR)};
+}
+
+// Columns as in the query of `readings`.
+ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& stage,
+                            const std::map<std::int64_t, std::int64_t>& scale_of_run) {
+  ReadingRow reading;
+  const bool is_visit = row.is_null(1);
+  reading.owner = is_visit ? 2 * row.integer(2) + 1 : 2 * row.integer(1);
+  reading.target = is_visit ? Target::Dark : target_from_name(row.text(3)).value_or(Target::Sample);
+  if (!is_visit) reading.point = static_cast<std::int32_t>(row.integer(4));
+  if (!is_visit) reading.wavelength_nm = row.real(5);
+  reading.id = row.integer(0);
+  const auto scale = scale_of_run.find(row.integer(6));
+  reading.at = Instant(Duration(row.integer(7) + (scale == scale_of_run.end() ? 0 : scale->second)));
+  reading.frame.region = {.n = static_cast<std::uint32_t>(row.integer(8)),
+                          .mean = row.real(9),
+                          .m2 = row.real(10),
+                          .m3 = row.real(11),
+                          .m4 = row.real(12),
+                          .saturated = static_cast<std::uint32_t>(row.integer(13))};
+  reading.frame.exposure_s = in_seconds(Duration(row.integer(14)));
+  reading.frame.gain_db = row.real(15);
+  reading.frame.monitor_mean = row.real(16);
+  reading.frame.monitor_se = row.real(17);
+  reading.frame.detector_temperature_c = row.real(18);
+  reading.frame.at_open = geometry_from_counts(row, 19, stage);
+  reading.frame.at_close = geometry_from_counts(row, 25, stage);
+  return reading;
+}
+
+// Frames of one attempt or visit at one exposure become one reading; its time is the mean of theirs.
+class ReadingCollector {
+ public:
+  void add(const ReadingRow& row) {
+    const Key key{row.owner, row.frame.exposure_s};
+    auto [place, is_new] = place_.try_emplace(key, readings_.size());
+    if (is_new) {
+      readings_.push_back(RawReading{.id = row.id,
+                                     .target = row.target,
+                                     .point_index = row.point,
+                                     .visit_id = row.owner,
+                                     .wavelength = nanometres(row.wavelength_nm),
+                                     .at = row.at});
+    }
+    RawReading& reading = readings_[place->second];
+    reading.frames.push_back(row.frame);
+    const auto n = static_cast<std::int64_t>(reading.frames.size());
+    reading.at += (row.at - reading.at) / n;
+  }
+
+  std::vector<RawReading> take() {
+    std::stable_sort(readings_.begin(), readings_.end(),
+                     [](const RawReading& a, const RawReading& b) { return a.at < b.at; });
+    return std::move(readings_);
+  }
+
+ private:
+  using Key = std::pair<std::int64_t, double>;
+  std::map<Key, std::size_t> place_;
+  std::vector<RawReading> readings_;
+};
+
+class SqliteStoreReader final : public StoreReader {
+ public:
+  explicit SqliteStoreReader(std::unique_ptr<Database> database) : database_(std::move(database)) {}
+
+  Result<std::vector<ScanInfo>> scans(ScanId before, int at_most) override {
+    return look([&] {
+      std::vector<ScanId> ids;
+      Statement& query =
+          database_->statement("SELECT scan_id FROM scan WHERE scan_id < ? ORDER BY scan_id DESC LIMIT ?");
+      query.bind(before == 0 ? std::numeric_limits<std::int64_t>::max() : before).bind(at_most);
+      while (query.next()) ids.push_back(query.integer(0));
+      std::vector<ScanInfo> infos;
+      for (const ScanId id : ids) infos.push_back(read_scan(id));
+      return infos;
+    });
+  }
+
+  Result<ScanInfo> scan(ScanId id) override {
+    auto info = look([&] { return read_scan(id); });
+    if (info && info->id == 0) return failure(no_such_scan(id));
+    return info;
+  }
+
+  Result<ScanTexts> texts(ScanId id) override {
+    std::optional<ScanTexts> texts;
+    Statement& query = database_
+                           ->statement(
+                               "SELECT plan_text, plan_file, r.text, i.text, plan_sha256, r.sha256, i.sha256 FROM scan "
+                               "JOIN reference_standard r USING (reference_id) JOIN instrument i USING (instrument_id) "
+                               "WHERE scan_id = ?")
+                           .bind(id);
+    while (query.next()) {
+      texts = ScanTexts{.plan = query.text(0),
+                        .plan_file = query.text(1),
+                        .reference = query.text(2),
+                        .instrument = query.text(3),
+                        .plan_sha256 = query.text(4),
+                        .reference_sha256 = query.text(5),
+                        .instrument_sha256 = query.text(6)};
+    }
+    GONIO_TRY(database_->take_error());
+    if (!texts) return failure(no_such_scan(id));
+    return *texts;
+  }
+
+  Result<std::vector<PointInfo>> points(ScanId id, std::int32_t after, int at_most) override {
+    return look([&] {
+      std::vector<PointInfo> infos;
+      for (const ScanPoint& point : read_points(*database_, id, after, at_most)) infos.push_back({.point = point});
+      if (!infos.empty()) add_outcomes(id, infos);
+      return infos;
+    });
+  }
+
+  Result<calibration::ScanReadings> readings(ScanId id, const drivers::StageConfig& stage) override {
+    auto found = look([&] {
+      calibration::ScanReadings all;
+      const ScanInfo info = read_scan(id);
+      if (info.id == 0) return std::pair(false, std::move(all));
+      all.isotropic = info.isotropic;
+      for (const ScanPoint& point : read_points(*database_, id, -1, std::numeric_limits<std::int64_t>::max())) {
+        all.points.push_back({.index = point.index, .geometry = point.geometry, .wavelength = point.wavelength});
+      }
+      all.readings = collect_readings(id, stage);
+      return std::pair(true, std::move(all));
+    });
+    if (!found) return failure(found.error());
+    if (!found->first) return failure(no_such_scan(id));
+    return std::move(found->second);
+  }
+
+  Result<std::vector<EventRecord>> events(std::int64_t after, int at_most, ScanId scan) override {
+    std::vector<EventRecord> records;
+    Statement& query = database_->statement(
+        "SELECT number, kind, kind_version, coalesce(scan_id, 0), who, utc_ns, json FROM event "
+        "WHERE number > ?1 AND (?2 = 0 OR scan_id = ?2) ORDER BY number LIMIT ?3");
+    query.bind(after).bind(scan).bind(at_most);
+    while (query.next()) {
+      records.push_back(EventRecord{.number = query.integer(0),
+                                    .kind = query.text(1),
+                                    .kind_version = static_cast<int>(query.integer(2)),
+                                    .scan = query.integer(3),
+                                    .who = query.text(4),
+                                    .utc = utc_from(query.integer(5)),
+                                    .json = query.text(6)});
+    }
+    GONIO_TRY(database_->take_error());
+    return records;
+  }
+
+  Result<std::int64_t> last_event() override {
+    std::int64_t number = 0;
+    Statement& query = database_->statement("SELECT coalesce(max(number), 0) FROM event");
+    while (query.next()) number = query.integer(0);
+    GONIO_TRY(database_->take_error());
+    return number;
+  }
+
+  Result<BrdfInfo> brdf(ScanId id) override {
+    auto info = look([&] { return read_brdf(id); });
+    if (info && info->calibration == 0) {
+      return failure(Error{.code = ErrorCode::NotFound,
+                           .device = "store",
+                           .tried = "read the BRDF of scan " + std::to_string(id),
+                           .seen = "none was computed yet"});
+    }
+    return info;
+  }
+
+  Result<std::vector<UnfinishedScan>> unfinished(Instant now, UtcTime utc_now) override {
+    return look([&] { return read_unfinished(*database_, now, utc_now); });
+  }
+
+ private:
+  // One consistent look, whatever the writer commits meanwhile.
+  template <class Read>
+  auto look(Read read) -> Result<decltype(read())> {
+    database_->statement("BEGIN").run();
+    auto value = read();
+    auto done = database_->take_error();
+    database_->execute("COMMIT");
+    auto ended = database_->take_error();
+    if (!done) return failure(done.error());
+    if (!ended) return failure(ended.error());
+    return value;
+  }
+
+  ScanInfo read_scan(ScanId id) {
+    ScanInfo info;
+    Statement& query =
+        database_
+            ->statement(
+                "SELECT s.scan_id, s.name, coalesce(c.name, ''), p.name, isotropic, state, outcome, who, serial, "
+                "configuration_hash, submitted_utc_ns, changed_utc_ns, merged, blocked, items, target_snr, "
+                "max_time_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan s "
+                "JOIN sample p USING (sample_id) JOIN reference_standard USING (reference_id) "
+                "LEFT JOIN campaign c USING (campaign_id) WHERE s.scan_id = ?")
+            .bind(id);
+    while (query.next()) {
+      info =
+          ScanInfo{.id = query.integer(0),
+                   .name = query.text(1),
+                   .campaign = query.text(2),
+                   .sample = query.text(3),
+                   .isotropic = query.integer(4) != 0,
+                   .state = scan_state_from_name(query.text(5)).value_or(ScanState::Failed),
+                   .outcome = query.text(6),
+                   .who = query.text(7),
+                   .reference_serial = query.text(8),
+                   .instrument_hash = query.text(9),
+                   .policy = policy_from_row(query, 15),
+                   .submitted = utc_from(query.integer(10)),
+                   .changed = utc_from(query.integer(11)),
+                   .counts = {.merged = query.integer(12), .blocked = query.integer(13), .items = query.integer(14)}};
+    }
+    if (info.id == 0) return info;
+    add_counts(info);
+    info.spent = read_time_spent(*database_, id);
+    // Times as UTC counts them: a reader has no clock, and only differences between holds mean something.
+    info.holds = read_holds(*database_, id, Instant{}, UtcTime{});
+    return info;
+  }
+
+  void add_counts(ScanInfo& info) {
+    Statement& query = database_->statement(
+        "SELECT (SELECT count(*) FROM point WHERE scan_id = ?1), "
+        "(SELECT count(*) FROM item WHERE scan_id = ?1 AND outcome = 'accepted'), "
+        "(SELECT count(*) FROM item WHERE scan_id = ?1 AND outcome = 'skipped'), "
+        "(SELECT count(*) FROM attempt WHERE scan_id = ?1), (SELECT count(*) FROM visit WHERE scan_id = ?1)");
+    query.bind(info.id);
+    while (query.next()) {
+      info.counts.points = query.integer(0);
+      info.counts.accepted = query.integer(1);
+      info.counts.skipped = query.integer(2);
+      info.counts.attempts = query.integer(3);
+      info.counts.visits = query.integer(4);
+    }
+  }
+
+  void add_outcomes(ScanId id, std::vector<PointInfo>& infos) {
+    const std::int32_t first = infos.front().point.index;
+    const std::int32_t last = infos.back().point.index;
+    Statement& items = database_->statement(
+        "SELECT point_index, target, outcome FROM item WHERE scan_id = ? AND point_index BETWEEN ? AND ?");
+    items.bind(id).bind(first).bind(last);
+    while (items.next()) {
+      PointInfo& info = infos[static_cast<std::size_t>(items.integer(0) - first)];
+      (items.text(1) == "sample" ? info.sample_outcome : info.reference_outcome) = items.text(2);
+    }
+    Statement& attempts = database_->statement(
+        "SELECT point_index, count(*) FROM attempt WHERE scan_id = ? AND point_index BETWEEN ? AND ? GROUP BY 1");
+    attempts.bind(id).bind(first).bind(last);
+    while (attempts.next()) {
+      infos[static_cast<std::size_t>(attempts.integer(0) - first)].attempts = static_cast<int>(attempts.integer(1));
+    }
+  }
+
+  // One scale for readings of several boots: boot time within each, and UTC at each boot's first run between them.
+  std::map<std::int64_t, std::int64_t> time_scales() {
+    std::map<std::int64_t, std::int64_t> scale_of_run;
+    std::map<std::string, std::int64_t> scale_of_boot;
+    Statement& runs =
+        database_->statement("SELECT run_id, boot_id, started_utc_ns - started_boottime_ns FROM run ORDER BY 1");
+    while (runs.next()) {
+      scale_of_run[runs.integer(0)] = scale_of_boot.try_emplace(runs.text(1), runs.integer(2)).first->second;
+    }
+    return scale_of_run;
+  }
+
+  std::vector<RawReading> collect_readings(ScanId id, const drivers::StageConfig& stage) {
+    const auto scales = time_scales();
+    ReadingCollector collector;
+    // Sorted by row: the order of the commits, and within one the order of the exposures.
+    Statement& query = database_->statement(
+        "SELECT reading_id, attempt_id, visit_id, target, point_index, wavelength_nm, run_id, t, region_n, mean_dn, "
+        "m2_dn2, "
+        "m3_dn3, m4_dn4, saturated, exposure_ns, gain_db, monitor_mean, monitor_se, detector_temperature_c, "
+        "open_theta_i_counts, open_theta_r_counts, open_phi_r_counts, open_phi_i_counts, open_carriage_counts, "
+        "open_filter_wheel_counts, close_theta_i_counts, close_theta_r_counts, close_phi_r_counts, close_phi_i_counts, "
+        "close_carriage_counts, close_filter_wheel_counts FROM ("
+        "SELECT d.*, d.boottime_ns AS t, a.run_id, a.target, a.point_index, p.wavelength_nm FROM item i "
+        "JOIN attempt a USING (attempt_id) JOIN reading d USING (attempt_id) "
+        "JOIN point p ON p.scan_id = a.scan_id AND p.point_index = a.point_index WHERE i.scan_id = ?1 "
+        "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, NULL, NULL, NULL FROM visit v "
+        "JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) WHERE used = 1 ORDER BY reading_id");
+    query.bind(id);
+    while (query.next()) collector.add(reading_from_row(query, stage, scales));
+    return collector.take();
+  }
+
+  BrdfInfo read_brdf(ScanId id) {
+    BrdfInfo info;
+    Statement& newest = database_->statement(
+        "SELECT calibration_id, code_version, inputs_json, component_names_json FROM calibration WHERE scan_id = ? "
+        "ORDER BY calibration_id DESC LIMIT 1");
+    newest.bind(id);
+    while (newest.next()) {
+      info.calibration = newest.integer(0);
+      info.code_version = newest.text(1);
+      info.inputs_json = newest.text(2);
+      const auto names = nlohmann::json::parse(newest.text(3), nullptr, false);
+      if (names.is_array()) info.component_names = names.get<std::vector<std::string>>();
+    }
+    Statement& query = database_->statement(
+        "SELECT point_index, value_per_sr, u_random_per_sr, effective_dof, flags, theta_i_deg, phi_i_deg, theta_r_deg, "
+        "phi_r_deg, sensitivities_per_sr FROM brdf WHERE calibration_id = ? ORDER BY point_index");
+    query.bind(info.calibration);
+    while (query.next()) {
+      const auto sensitivities = query.doubles(9);
+      const double dof = query.real(3);
+      info.rows.push_back(BrdfRow{.point = static_cast<std::int32_t>(query.integer(0)),
+                                  .value_per_sr = query.real(1),
+                                  .u_random_per_sr = query.real(2),
+                                  .effective_dof = dof == 0.0 ? std::numeric_limits<double>::infinity() : dof,
+                                  .flags = static_cast<std::uint32_t>(query.integer(4)),
+                                  .reported = {.theta_i = degrees(query.real(5)),
+                                               .phi_i = degrees(query.real(6)),
+                                               .theta_r = degrees(query.real(7)),
+                                               .phi_r = degrees(query.real(8))},
+                                  .sensitivities_per_sr = {sensitivities.begin(), sensitivities.end()}});
+    }
+    return info;
+  }
+
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<StoreReader>> StoreReader::open(const std::string& path) {
+  auto database = Database::open(path, Database::Mode::Read);
+  if (!database) return failure(database.error());
+  GONIO_TRY(check_version(**database));
+  return std::make_unique<SqliteStoreReader>(std::move(*database));
+}
+
+}  // namespace gonio::daemon

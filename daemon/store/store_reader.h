@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "calibration/raw_reading.h"
+#include "daemon/store/records.h"
+#include "drivers/stage_config.h"
+
+namespace gonio::daemon {
+
+struct ScanCounts {
+  std::int64_t points = 0;  ///< blocked ones included
+  std::int64_t merged = 0;
+  std::int64_t blocked = 0;
+  std::int64_t items = 0;  ///< to be decided: sample and reference of the points not blocked
+  std::int64_t accepted = 0;
+  std::int64_t skipped = 0;
+  std::int64_t attempts = 0;  ///< failed and dropped ones included
+  std::int64_t visits = 0;
+};
+
+struct ScanInfo {
+  ScanId id = 0;
+  std::string name;
+  std::string campaign;
+  std::string sample;
+  bool isotropic = true;
+  ScanState state = ScanState::Queued;
+  std::string outcome;  ///< why it ended
+  std::string who;
+  std::string reference_serial;
+  std::string instrument_hash;
+  ScanPolicy policy;
+  UtcTime submitted{};
+  UtcTime changed{};  ///< last transition
+  ScanCounts counts;
+  TimeParts spent;          ///< sums over all attempts and visits
+  std::vector<Hold> holds;  ///< since: only differences within this boot mean something
+};
+
+/// The texts a scan was accepted with, as they were.
+struct ScanTexts {
+  std::string plan;
+  std::string plan_file;
+  std::string reference;
+  std::string instrument;
+  std::string plan_sha256;  ///< hex
+  std::string reference_sha256;
+  std::string instrument_sha256;
+};
+
+/// A point with what became of it.
+struct PointInfo {
+  ScanPoint point;
+  std::string sample_outcome;  ///< "accepted", "skipped", or empty while open
+  std::string reference_outcome;
+  int attempts = 0;
+};
+
+struct BrdfInfo {
+  std::int64_t calibration = 0;
+  std::string code_version;
+  std::string inputs_json;
+  std::vector<std::string> component_names;
+  std::vector<BrdfRow> rows;  ///< by point
+};
+
+/// Reads the store on its own read-only connection, beside the writer. Threads: one; any number of readers, also in
+/// other processes. Every call is one consistent look. Errors of all: StoreFailed; NotFound for a scan that is not
+/// there.
+class StoreReader {
+ public:
+  /// Errors: StoreFailed (no file, no permission), StoreTooNew.
+  [[nodiscard]] static Result<std::unique_ptr<StoreReader>> open(const std::string& path);
+  virtual ~StoreReader() = default;
+
+  /// Newest first; `before` = 0 starts at the newest, else scans older than it.
+  [[nodiscard]] virtual Result<std::vector<ScanInfo>> scans(ScanId before, int at_most) = 0;
+  [[nodiscard]] virtual Result<ScanInfo> scan(ScanId id) = 0;
+  [[nodiscard]] virtual Result<ScanTexts> texts(ScanId id) = 0;
+  /// Points with index > `after` (-1: from the first).
+  [[nodiscard]] virtual Result<std::vector<PointInfo>> points(ScanId id, std::int32_t after, int at_most) = 0;
+  /// Accepted attempts and all dark visits in time order; encoder counts become angles by `stage`. Frames of one
+  /// attempt or visit at one exposure are one RawReading; its visit_id is 2 * attempt or 2 * visit + 1.
+  [[nodiscard]] virtual Result<calibration::ScanReadings> readings(ScanId id, const drivers::StageConfig& stage) = 0;
+  /// Events with number > `after`, in order; `scan` = 0: of all.
+  [[nodiscard]] virtual Result<std::vector<EventRecord>> events(std::int64_t after, int at_most, ScanId scan) = 0;
+  [[nodiscard]] virtual Result<std::int64_t> last_event() = 0;
+  /// The newest BRDF. Errors: NotFound when none was computed yet.
+  [[nodiscard]] virtual Result<BrdfInfo> brdf(ScanId id) = 0;
+  /// All scans that are not over, oldest first. For the sequencer's start.
+  [[nodiscard]] virtual Result<std::vector<UnfinishedScan>> unfinished(Instant now, UtcTime utc_now) = 0;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,160 @@
+#include "daemon/store/unfinished_scans.h"
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "daemon/store/policy_names.h"
+
+namespace gonio::daemon {
+
+namespace {
+
+template <class E, std::size_t N>
+E enum_at(const std::array<std::string_view, N>& names, std::string_view name) {
+  return static_cast<E>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+ItemKey item_from_row(const Statement& row, int first) {
+  return ItemKey{.point = static_cast<std::int32_t>(row.integer(first)),
+                 .target = target_from_name(row.text(first + 1)).value_or(calibration::Target::Sample)};
+}
+
+void read_items(Database& database, UnfinishedScan& scan) {
+  Statement& query =
+      database.statement("SELECT point_index, target, outcome FROM item WHERE scan_id = ?").bind(scan.id);
+  while (query.next()) {
+    auto& list = query.text(2) == "accepted" ? scan.accepted : scan.skipped;
+    list.push_back(item_from_row(query, 0));
+  }
+}
+
+void read_attempts(Database& database, UnfinishedScan& scan) {
+  Statement& query = database
+                         .statement(
+                             "SELECT point_index, target, count(*) FROM attempt a WHERE scan_id = ? AND outcome = "
+                             "'failed' AND NOT EXISTS (SELECT 1 FROM item i WHERE i.scan_id = a.scan_id AND "
+                             "i.point_index = a.point_index AND i.target = a.target) GROUP BY 1, 2")
+                         .bind(scan.id);
+  while (query.next()) scan.attempts.emplace_back(item_from_row(query, 0), static_cast<int>(query.integer(2)));
+}
+
+void read_dark_needs(Database& database, UnfinishedScan& scan) {
+  Statement& rungs = database
+                         .statement(
+                             "SELECT DISTINCT exposure_ns FROM item JOIN reading USING (attempt_id) WHERE "
+                             "scan_id = ? AND used = 1 ORDER BY 1")
+                         .bind(scan.id);
+  while (rungs.next()) scan.exposures_used.push_back(Duration(rungs.integer(0)));
+  Statement& owed = database
+                        .statement(
+                            "SELECT EXISTS (SELECT 1 FROM item WHERE scan_id = ?1 AND attempt_id > coalesce("
+                            "(SELECT max(after_attempt) FROM visit WHERE scan_id = ?1 AND kind = 'dark'), 0))")
+                        .bind(scan.id);
+  while (owed.next()) scan.dark_owed = owed.integer(0) != 0;
+}
+
+void complete(Database& database, UnfinishedScan& scan, Instant now, UtcTime utc_now) {
+  scan.points = read_points(database, scan.id, -1, std::numeric_limits<std::int64_t>::max());
+  for (const ScanPoint& point : scan.points) {
+    if (!point.blocked) scan.order.push_back(point.index);
+  }
+  std::sort(scan.order.begin(), scan.order.end(), [&scan](std::int32_t a, std::int32_t b) {
+    return scan.points[static_cast<std::size_t>(a)].rank < scan.points[static_cast<std::size_t>(b)].rank;
+  });
+  read_items(database, scan);
+  read_attempts(database, scan);
+  read_dark_needs(database, scan);
+  scan.holds = read_holds(database, scan.id, now, utc_now);
+  scan.spent = read_time_spent(database, scan.id);
+}
+
+}  // namespace
+
+ScanPolicy policy_from_row(const Statement& row, int first) {
+  return ScanPolicy{.target_snr = row.real(first),
+                    .max_time = Duration(row.integer(first + 1)),
+                    .block = Duration(row.integer(first + 2)),
+                    .dark_every = Duration(row.integer(first + 3)),
+                    .item_retries = static_cast<int>(row.integer(first + 4)),
+                    .on_item_error = enum_at<api::OnItemError>(kOnItemErrorNames, row.text(first + 5)),
+                    .on_restart = enum_at<api::OnRestart>(kOnRestartNames, row.text(first + 6))};
+}
+
+std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t after, std::int64_t at_most) {
+  std::vector<ScanPoint> points;
+  Statement& query = database
+                         .statement(
+                             "SELECT point_index, rank, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, "
+                             "wavelength_nm, blocked FROM point WHERE scan_id = ? AND point_index > ? "
+                             "ORDER BY point_index LIMIT ?")
+                         .bind(scan)
+                         .bind(after)
+                         .bind(at_most);
+  while (query.next()) {
+    points.push_back(ScanPoint{.index = static_cast<std::int32_t>(query.integer(0)),
+                               .rank = static_cast<std::int32_t>(query.integer(1)),
+                               .geometry = {.theta_i = degrees(query.real(2)),
+                                            .phi_i = degrees(query.real(3)),
+                                            .theta_r = degrees(query.real(4)),
+                                            .phi_r = degrees(query.real(5))},
+                               .wavelength = nanometres(query.real(6)),
+                               .blocked = query.integer(7) != 0});
+  }
+  return points;
+}
+
+std::vector<Hold> read_holds(Database& database, ScanId scan, Instant now, UtcTime utc_now) {
+  std::vector<Hold> holds;
+  Statement& query = database
+                         .statement(
+                             "SELECT name, owner, reason, since_utc_ns FROM hold WHERE scan_id = ? AND "
+                             "cleared_utc_ns IS NULL ORDER BY hold_id")
+                         .bind(scan);
+  while (query.next()) {
+    const Duration ago = utc_now.time_since_epoch() - Duration(query.integer(3));
+    holds.push_back(Hold{.name = hold_from_name(query.text(0)).value_or(HoldName::Operator),
+                         .owner = query.text(1),
+                         .reason = query.text(2),
+                         .since = now - ago});
+  }
+  return holds;
+}
+
+TimeParts read_time_spent(Database& database, ScanId scan) {
+  TimeParts spent;
+  Statement& query = database
+                         .statement(
+                             "SELECT total(move_ns), total(settle_ns), total(expose_ns), total(read_ns), "
+                             "total(idle_ns) FROM (SELECT move_ns, settle_ns, expose_ns, read_ns, idle_ns FROM "
+                             "attempt WHERE scan_id = ?1 UNION ALL SELECT move_ns, settle_ns, expose_ns, read_ns, "
+                             "idle_ns FROM visit WHERE scan_id = ?1)")
+                         .bind(scan);
+  while (query.next()) {
+    const auto part = [&query](int column) { return Duration(static_cast<std::int64_t>(query.real(column))); };
+    spent = {.move = part(0), .settle = part(1), .expose = part(2), .read = part(3), .idle = part(4)};
+  }
+  return spent;
+}
+
+std::vector<UnfinishedScan> read_unfinished(Database& database, Instant now, UtcTime utc_now) {
+  std::vector<UnfinishedScan> scans;
+  Statement& query = database.statement(
+      "SELECT scan_id, state, finish_asked, name, isotropic, configuration_hash, merged, target_snr, max_time_ns, "
+      "block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan "
+      "WHERE state NOT IN ('done', 'finished-early', 'aborted', 'failed') ORDER BY scan_id");
+  while (query.next()) {
+    scans.push_back(UnfinishedScan{.id = query.integer(0),
+                                   .state = scan_state_from_name(query.text(1)).value_or(ScanState::Failed),
+                                   .finish_asked = query.integer(2) != 0,
+                                   .name = query.text(3),
+                                   .policy = policy_from_row(query, 7),
+                                   .isotropic = query.integer(4) != 0,
+                                   .instrument_hash = query.text(5),
+                                   .merged = query.integer(6)});
+  }
+  for (UnfinishedScan& scan : scans) complete(database, scan, now, utc_now);
+  return scans;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "daemon/store/database.h"
+#include "daemon/store/records.h"
+
+namespace gonio::daemon {
+
+/// All scans that are not over, oldest first. Holds' times are carried into this boot by UTC. Errors stick in the
+/// database.
+[[nodiscard]] std::vector<UnfinishedScan> read_unfinished(Database& database, Instant now, UtcTime utc_now);
+
+/// The points of a scan with index > `after`, by index.
+[[nodiscard]] std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t after,
+                                                 std::int64_t at_most);
+/// Holds in force.
+[[nodiscard]] std::vector<Hold> read_holds(Database& database, ScanId scan, Instant now, UtcTime utc_now);
+/// The sum over all attempts and visits.
+[[nodiscard]] TimeParts read_time_spent(Database& database, ScanId scan);
+/// The policy in columns `first` and after: target_snr, max_time_ns, block_ns, dark_every_ns, item_retries,
+/// on_item_error, on_restart.
+[[nodiscard]] ScanPolicy policy_from_row(const Statement& row, int first);
+
+}  // namespace gonio::daemon
