@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "base/units.h"
 
 namespace gonio::calibration {
@@ -10,9 +12,13 @@ struct DetectorModel {
   double read_noise_dn = 0.0;     ///< standard deviation of one pixel of one frame, quantisation included
   double full_scale_dn = 4095.0;
   Measured<double> exposure_offset_s{};  ///< t0: the light falls for exposure + t0
-  double u_linearity = 0.0;              ///< relative, over the full range; shared by the scan
-  double u_dark_drift_dn_per_s =
-      0.0;  ///< of exposure: what interpolation between darks may miss; shared within a dark block
+  double u_linearity = 0.0;              ///< relative, at full scale, error growing with the signal; shared by the scan
+  /// Of exposure: what interpolation between two darks may miss; shared between them.
+  double u_dark_drift_dn_per_s = 0.0;
+};                         ///< t0: the light falls for exposure + t0
+double u_linearity = 0.0;  ///< relative, over the full range; shared by the scan
+double u_dark_drift_dn_per_s =
+    0.0;  ///< of exposure: what interpolation between darks may miss; shared within a dark block
 };
 
 /// Standard uncertainties (k = 1) of the directions, shared by the scan (zeros of the arms) and from move to move.
@@ -25,9 +31,10 @@ struct AngleModel {
 
 /// What is left of the lamp and the placing after the monitor; relative, k = 1.
 struct LampModel {
-  double u_after_monitor = 0.0;  ///< between two readings `correlation_s` or more apart
-  double correlation_s = 3600.0;
+  double u_after_monitor = 0.0;   ///< of the difference of two readings far apart
+  double correlation_s = 3600.0;  ///< two readings dt apart: u_after_monitor sqrt(1 - exp(-dt^2 / (2 correlation_s^2)))
   double u_reproducibility = 0.0;  ///< random per reading: placing, fine structure of the surface
+  double reproducibility_dof = std::numeric_limits<double>::infinity();  ///< how well u_reproducibility is known
 };
 
 /// The instrument's side of the measurement equation, from instrument.toml.

@@ -30,6 +30,9 @@ class ReferenceStandard {
   [[nodiscard]] const std::string& material() const { return definition_.material; }
   [[nodiscard]] const Certificate& certificate() const { return definition_.certificate; }
   [[nodiscard]] std::span<const ShapeMode> modes() const { return definition_.modes; }
+  [[nodiscard]] const ShapeTable& table() const { return definition_.shape; }  ///< on the file's own scale
+  [[nodiscard]] Angle last_theta_i() const { return definition_.shape.theta_i().back(); }
+  [[nodiscard]] Angle last_theta_r() const { return definition_.shape.theta_r().back(); }
   /// Relative, k = 1, of the normalising integral: the cap beyond the table, a hole at the hot spot. 0 for 0/45.
   [[nodiscard]] double u_integral() const { return definition_.u_integral; }
 

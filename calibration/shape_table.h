@@ -24,6 +24,7 @@ class ShapeTable {
   [[nodiscard]] const std::vector<Angle>& theta_i() const { return theta_i_; }
   [[nodiscard]] const std::vector<Angle>& theta_r() const { return theta_r_; }
   [[nodiscard]] const std::vector<Angle>& phi() const { return phi_; }
+  [[nodiscard]] const std::vector<double>& values() const { return values_; }
 
  private:
   std::vector<Angle> theta_i_;

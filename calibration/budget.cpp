@@ -1,0 +1,127 @@
+#include "calibration/budget.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace gonio::calibration {
+namespace {
+
+constexpr double kLevel = 0.9545;
+
+double square(double x) {
+  return x * x;
+}
+
+// Ascending by component; stable, so that sums have one order whatever the sort.
+void sort_terms(std::vector<BudgetTerm>& terms) {
+  std::ranges::stable_sort(terms, {}, &BudgetTerm::component);
+}
+
+template <class Add>
+std::vector<BudgetTerm> merged(std::vector<BudgetTerm> terms, Add add) {
+  sort_terms(terms);
+  std::vector<BudgetTerm> once;
+  for (const BudgetTerm& term : terms) {
+    if (!once.empty() && once.back().component == term.component) {
+      once.back().per_sd = add(once.back().per_sd, term.per_sd);
+    } else {
+      once.push_back(term);
+    }
+  }
+  std::erase_if(once, [](const BudgetTerm& term) { return term.per_sd == Brdf{}; });
+  return once;
+}
+
+double sum_of_squares(const std::vector<BudgetTerm>& terms) {
+  double sum = 0.0;
+  for (const BudgetTerm& term : terms) sum += square(term.per_sd.si());
+  return sum;
+}
+
+// The regularised incomplete beta function I_x(a, b) by Lentz's continued fraction (NIST DLMF 8.17.22), which converges
+// fast for x below (a + 1) / (a + b + 2).
+double incomplete_beta(double x, double a, double b) {
+  if (x <= 0.0) return 0.0;
+  if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incomplete_beta(1.0 - x, b, a);
+  constexpr double kTiny = 1e-300;
+  constexpr int kTermsAtMost = 500;
+  double c = 1.0;
+  double d = 1.0 / std::max(kTiny, 1.0 - (a + b) * x / (a + 1.0));
+  double fraction = d;
+  for (int m = 1; m <= kTermsAtMost; ++m) {
+    const double even = m * (b - m) * x / ((a + 2 * m - 1.0) * (a + 2 * m));
+    d = 1.0 / (1.0 + even * d);
+    c = 1.0 + even / c;
+    fraction *= c * d;
+    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1.0));
+    d = 1.0 / (1.0 + odd * d);
+    c = 1.0 + odd / c;
+    fraction *= c * d;
+    if (std::abs(c * d - 1.0) < 1e-15) break;
+  }
+  const double log_front = a * std::log(x) + b * std::log1p(-x) + std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b);
+  return std::exp(log_front) * fraction / a;
+}
+
+// The share of Student's t with `nu` degrees of freedom within +-t: I_y(1/2, nu/2), y = t^2 / (nu + t^2).
+double share_within(double t, double nu) {
+  return incomplete_beta(t * t / (nu + t * t), 0.5, 0.5 * nu);
+}
+
+}  // namespace
+
+double coverage_factor(double degrees_of_freedom) {
+  assert(degrees_of_freedom > 0.0);
+  constexpr double kAsGoodAsInfinite = 1e5;  // there k differs from its limit by 3e-5
+  if (degrees_of_freedom > kAsGoodAsInfinite) return 2.0;
+  double low = 2.0;
+  double high = 4.0;
+  while (share_within(high, degrees_of_freedom) < kLevel && high < 1e9) high *= 2.0;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (share_within(middle, degrees_of_freedom) < kLevel ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
+                   std::vector<BudgetTerm> shared) {
+  Budget budget;
+  budget.random = merged(std::move(random), [](Brdf a, Brdf b) { return Brdf::from_si(std::hypot(a.si(), b.si())); });
+  budget.shared = merged(std::move(shared), [](Brdf a, Brdf b) { return a + b; });
+  const double random2 = sum_of_squares(budget.random);
+  const double shared2 = sum_of_squares(budget.shared);
+  const double u = std::sqrt(random2 + shared2);
+  double sum4 = 0.0;  // of u_i^4 / nu_i
+  for (const auto* terms : {&budget.random, &budget.shared}) {
+    for (const BudgetTerm& term : *terms) {
+      sum4 += square(square(term.per_sd.si())) / components[term.component].degrees_of_freedom;
+    }
+  }
+  if (sum4 > 0.0) budget.degrees_of_freedom = square(square(u)) / sum4;
+  budget.u_random = per_steradian(std::sqrt(random2));
+  budget.u_shared = per_steradian(std::sqrt(shared2));
+  budget.u = per_steradian(u);
+  budget.k = coverage_factor(budget.degrees_of_freedom);
+  budget.expanded = budget.k * budget.u;
+  return budget;
+}
+
+Measured<Brdf> weighted_sum(std::span<const SumTerm> terms) {
+  double value = 0.0;
+  double random2 = 0.0;
+  std::map<std::uint32_t, double> shared;
+  for (const SumTerm& term : terms) {
+    value += term.weight * term.value.si();
+    random2 += square(term.weight * term.budget->u_random.si());
+    for (const BudgetTerm& s : term.budget->shared) shared[s.component] += term.weight * s.per_sd.si();
+  }
+  double u2 = random2;
+  for (const auto& [component, sum] : shared) u2 += square(sum);
+  return {.value = per_steradian(value), .u = per_steradian(std::sqrt(u2))};
+}
+
+}  // namespace gonio::calibration

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+
+namespace gonio::calibration {
+
+/// Random: drawn anew for each point. Shared: one error, which all points feel with their own sensitivities (JCGM
+/// 100:2008, 5.2: the correlation that a sum over points must keep).
+enum class ComponentKind : std::uint8_t { Random, Shared };
+
+/// One source of uncertainty of a scan.
+struct Component {
+  std::string name;  ///< "certificate", "zero theta_i", "dark visit 12 at 0.064 s"
+  ComponentKind kind = ComponentKind::Shared;
+  double u = 0.0;    ///< k = 1, in `unit`; 0 when it differs from point to point
+  std::string unit;  ///< "1" when relative
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of u
+};
+
+/// What one standard deviation of a component does to a value. Absolute, in sr^-1, for the value may be 0 or negative.
+struct BudgetTerm {
+  std::uint32_t component = 0;  ///< index into the scan's table of components
+  Brdf per_sd;                  ///< signed for shared components, >= 0 for random ones
+  friend bool operator==(const BudgetTerm&, const BudgetTerm&) = default;
+};
+
+/// The uncertainty of one value. Terms of the same component never come twice; both lists ascend by component.
+struct Budget {
+  std::vector<BudgetTerm> random;
+  std::vector<BudgetTerm> shared;
+  Brdf u_random;  ///< root sum of squares of `random`
+  Brdf u_shared;  ///< root sum of squares of `shared`: components are independent of each other
+  Brdf u;         ///< combined standard uncertainty u_c
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< effective, Welch-Satterthwaite
+  double k = 0.0;                                                       ///< for a level of confidence of 95.45 %
+  Brdf expanded;                                                        ///< U = k u_c
+};
+
+/// Sorts the terms, merges those of one component (random: root sum of squares; shared: signed sum), leaves out those
+/// that are 0, and adds all up: u_c, the effective degrees of freedom (JCGM 100:2008, eq G.2b), k and U.
+[[nodiscard]] Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
+                                 std::vector<BudgetTerm> shared);
+
+/// k for a level of confidence of 95.45 %: Student's t at p = 0.9545 for `degrees_of_freedom` > 0 (JCGM 100:2008, table
+/// G.2; it need not be whole), 2.000 for infinity.
+[[nodiscard]] double coverage_factor(double degrees_of_freedom);
+
+/// One value of a weighted sum over a scan's points, and the uncertainty that keeps the correlations:
+///   u^2(sum w_j f_j) = sum (w_j u_random,j)^2 + sum_k (sum_j w_j c_kj)^2.
+struct SumTerm {
+  double weight = 0.0;
+  Brdf value;
+  const Budget* budget = nullptr;  ///< of a point of the same scan
+};
+/// In sr^-1 times the unit of the weights. The terms are added in their order: the same bits every time.
+[[nodiscard]] Measured<Brdf> weighted_sum(std::span<const SumTerm> terms);
+
+}  // namespace gonio::calibration

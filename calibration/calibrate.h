@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "calibration/calibrated_scan.h"
+#include "calibration/instrument_model.h"
+#include "calibration/raw_reading.h"
+#include "calibration/reference_standard.h"
+
+namespace gonio::calibration {
+
+/// The rules of this room, as one number: grows whenever the same inputs would give other values.
+inline constexpr std::string_view kCalibrationCode = "gonio-calibration-1";
+
+/// Readings to BRDF by the ratio to the reference at the same geometry and wavelength:
+///   f_s(G) = f_ref(G_ref) q_s mu_i,ref / (q_ref mu_i,s),
+/// where source power, solid angles and overlap cancel and the cosines (of the radiance mode: field of view inside the
+/// lit spot) differ only by what the encoders say. q as in NormalisedReading. f_ref as in ReferenceStandard. The last
+/// reading of a point and target counts; a point without its own reference reading takes that of another point at the
+/// same geometry and wavelength (|dphi| alone counts: the standard is isotropic).
+///
+/// u(f) by the law of propagation (JCGM 100:2008, eq 13), every term in sr^-1. Components, each only where its u is not
+/// 0:
+/// - random: noise, monitor, angle repeatability and reproducibility of sample and reference readings. A reference
+/// reading
+///   that serves several points becomes one shared component of theirs instead;
+/// - shared: certificate; shape modes and the shape's integral; zeros of the arms through d f_s/d angle -
+///   f_s d ln f_ref/d angle (direction_slopes.h), and what those slopes leave unresolved; exposure offset; linearity
+///   L(N_s) - L(N_ref), L = eps N / full scale; lamp after the monitor, one component for each correlation time, with
+///   u^2 = u_after^2 (1 - exp(-dt^2 / (2 correlation^2))); each dark visit and rung; drift between darks, one for each
+///   interval.
+/// Points whose reading cannot be used are listed with the reason; they are never filled in.
+/// Errors: ReferenceExpired at `measured_on`. Pure; single-threaded, so the same inputs give the same bits.
+[[nodiscard]] Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel& instrument,
+                                               const ReferenceStandard& standard, UtcTime measured_on);
+
+/// All that `calibrate` rests on beside the readings, as one text with all digits: its hash names a calibration.
+[[nodiscard]] std::string describe_inputs(const InstrumentModel& instrument, const ReferenceStandard& standard);
+
+}  // namespace gonio::calibration

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "base/units.h"
+
+namespace gonio::calibration {
+
+/// The angles whose zeros may be wrong, in the order of every array below.
+enum class DirectionAxis : std::size_t { ThetaI, ThetaR, PhiR };
+inline constexpr std::size_t kDirectionAxes = 3;
+
+/// A measured value at its directions.
+struct SlopePoint {
+  Geometry planned;   ///< says which points lie on one line
+  Geometry reported;  ///< says how far apart
+  Wavelength wavelength;
+  Brdf value;
+  Brdf u_random;
+};
+
+/// The change of f_r with each angle at one point, sr^-1 per radian.
+struct DirectionSlopes {
+  std::array<double, kDirectionAxes> slope{};
+  std::array<double, kDirectionAxes> unresolved{};  ///< standard uncertainty of `slope`: what the points do not resolve
+  std::array<bool, kDirectionAxes>
+      has_neighbours{};  ///< false: no other point on this line; `slope` is 0, `unresolved` a guess
+};
+
+/// Slopes from the measured points alone; no model of the surface. For each point and axis:
+/// - its line holds the points of the same wavelength whose other angles are planned equal (to 0.001 deg). A theta line
+/// runs
+///   through the normal into the opposite half plane; for an isotropic sample a point also stands for its mirror image
+///   in the plane of incidence, and theta = 0 belongs to all lines through it;
+/// - polynomials through the point and its 1, 2, 3, 4 nearest neighbours within 45 deg give derivatives s_1 .. s_4;
+///   with s_0 = 0, |s_p - s_(p-1)| bounds what order p still misses on a smooth surface;
+/// - taken is the p with the least noise^2 + |s_p - s_(p-1)|^2, `unresolved` is that difference. The noise itself is
+/// part
+///   of s_p, so the expectation of s_p^2 holds it already;
+/// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope;
+/// - without a neighbour: |df/dtheta_i| is taken as large as |df/dtheta_r| and the other way round (equal for what
+/// depends
+///   on the phase angle or on the tilt of a facet), phi as large as the larger of them times sin(theta_r), and without
+///   any neighbour at all, |f| per radian.
+/// [points], in their order. O(n log n). The same bits whatever else runs.
+[[nodiscard]] std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic);
+
+}  // namespace gonio::calibration

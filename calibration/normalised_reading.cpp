@@ -1,0 +1,120 @@
+#include "calibration/normalised_reading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace gonio::calibration {
+namespace {
+
+double gain_factor(const RawFrame& frame) {
+  return std::pow(10.0, frame.gain_db / 20.0);
+}
+
+Error refusal(const RawReading& reading, ErrorCode code, std::string seen, std::string limit) {
+  return {.code = code,
+          .device = "detector",
+          .tried = fmt::format("calibrate reading {}", reading.id),
+          .seen = std::move(seen),
+          .limit = std::move(limit)};
+}
+
+Result<void> check(const RawReading& reading) {
+  if (reading.frames.empty()) {
+    return failure(refusal(reading, ErrorCode::IncompleteData, "no frame", "at least one frame"));
+  }
+  for (const RawFrame& frame : reading.frames) {
+    if (frame.region.saturated > 0) {
+      return failure(refusal(reading, ErrorCode::Saturated, fmt::format("{} saturated pixels", frame.region.saturated),
+                             "none inside the aperture"));
+    }
+    if (frame.region.n == 0 || !(frame.exposure_s > 0.0) || !(frame.monitor_mean > 0.0)) {
+      return failure(refusal(
+          reading, ErrorCode::IncompleteData,
+          fmt::format("{} pixels, exposure {} s, monitor {}", frame.region.n, frame.exposure_s, frame.monitor_mean),
+          "all of them above 0"));
+    }
+  }
+  return {};
+}
+
+// Angles averaged as differences from the first, so that azimuths may cross 360 deg.
+Geometry mean_geometry(const std::vector<RawFrame>& frames) {
+  const Geometry first = frames.front().at_open;
+  Geometry sum{};
+  const auto add = [&](const Geometry& g) {
+    sum.theta_i += g.theta_i - first.theta_i;
+    sum.phi_i += wrapped(g.phi_i - first.phi_i);
+    sum.theta_r += g.theta_r - first.theta_r;
+    sum.phi_r += wrapped(g.phi_r - first.phi_r);
+  };
+  for (const RawFrame& frame : frames) {
+    add(frame.at_open);
+    add(frame.at_close);
+  }
+  const double share = 0.5 / static_cast<double>(frames.size());
+  return {.theta_i = first.theta_i + share * sum.theta_i,
+          .phi_i = first.phi_i + share * sum.phi_i,
+          .theta_r = first.theta_r + share * sum.theta_r,
+          .phi_r = first.phi_r + share * sum.phi_r};
+}
+
+struct FrameTerm {
+  double net = 0.0;       // DN
+  double light = 0.0;     // (t + t0) G m
+  double variance = 0.0;  // of net, DN^2, without the dark level's own
+  double u_light = 0.0;   // from the monitor's noise
+};
+
+}  // namespace
+
+Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
+                                    const DetectorModel& detector) {
+  GONIO_TRY(check(reading));
+  std::map<ExposureRung, DarkShare> shares;
+  std::vector<FrameTerm> terms;
+  double net = 0.0, light = 0.0, variance = 0.0, monitor2 = 0.0, gain_monitor = 0.0;
+  for (const RawFrame& frame : reading.frames) {
+    const ExposureRung rung = rung_of(frame);
+    const std::optional<DarkLevel> dark = darks.at(rung, reading.at);
+    if (!dark) {
+      return failure(refusal(reading, ErrorCode::IncompleteData, "no dark at its exposure",
+                             fmt::format("a dark visit at {} s and {} dB", frame.exposure_s, frame.gain_db)));
+    }
+    const double gain = gain_factor(frame);
+    const double exposure = (frame.exposure_s + detector.exposure_offset_s.value) * gain;
+    FrameTerm term{.net = frame.region.mean - dark->level_dn, .light = exposure * frame.monitor_mean};
+    term.variance =
+        (dark->pixel_variance_dn2 + std::max(0.0, term.net) * gain / detector.electrons_per_dn) / frame.region.n;
+    net += term.net;
+    light += term.light;
+    variance += term.variance;
+    term.u_light = exposure * frame.monitor_se;
+    monitor2 += term.u_light * term.u_light;
+    gain_monitor += gain * frame.monitor_mean;
+    DarkShare& share = shares.try_emplace(rung, DarkShare{rung, *dark, 0.0}).first->second;
+    share.dq_dlevel -= 1.0;
+    terms.push_back(term);
+  }
+  NormalisedReading out{.q = net / light,
+                        .u_noise = std::sqrt(variance) / light,
+                        .u_monitor = std::abs(net) * std::sqrt(monitor2) / (light * light),
+                        .dlnq_dt0 = -gain_monitor / light,
+                        .mean_net_dn = net / static_cast<double>(reading.frames.size()),
+                        .frame_dof = static_cast<double>(reading.frames.size()) - 1.0,
+                        .geometry = mean_geometry(reading.frames),
+                        .at = reading.at};
+  for (const FrameTerm& term : terms) {
+    out.frame_chi2 += std::pow(term.net - out.q * term.light, 2) / (term.variance + std::pow(out.q * term.u_light, 2));
+  }
+  for (auto& [rung, share] : shares) {
+    share.dq_dlevel /= light;
+    out.darks.push_back(std::move(share));
+  }
+  return out;
+}
+
+}  // namespace gonio::calibration

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "base/geometry.h"
+#include "base/result.h"
+#include "calibration/dark_history.h"
+#include "calibration/instrument_model.h"
+#include "calibration/raw_reading.h"
+
+namespace gonio::calibration {
+
+/// What one dark level did to a reading: dq/dD [1/s per unit of the monitor] times the weight of each bracketing visit.
+struct DarkShare {
+  ExposureRung rung;
+  DarkLevel level;
+  double dq_dlevel = 0.0;  ///< of the interpolated level
+};
+
+/// One reading, cleared of dark, exposure, gain and lamp:
+///   q = sum_j (S_j - D_j) / sum_j ((t_j + t0) G_j m_j)     over its frames j,
+/// in DN per second and unit of the monitor; signed. The ratio of sums weighs frames as their light does, so that
+/// frames of different exposures combine as their shot noise asks.
+struct NormalisedReading {
+  double q = 0.0;
+  double u_noise = 0.0;      ///< of q: photon transfer, random
+  double u_monitor = 0.0;    ///< of q: the monitor's noise over the exposures, random
+  double dlnq_dt0 = 0.0;     ///< 1/s
+  double mean_net_dn = 0.0;  ///< of a pixel of a frame: what the detector's linearity depends on
+  double frame_chi2 = 0.0;   ///< of its frames about q, by the noise model; `frame_dof` degrees of freedom
+  double frame_dof = 0.0;
+  std::vector<DarkShare> darks;  ///< one each rung
+  Geometry geometry;             ///< reported: mean of open and close over the frames
+  Instant at{};
+};
+
+/// Errors: Saturated (a pixel of the aperture: dropping it would bias the mean); IncompleteData (no frame, no pixel, no
+/// light on the monitor, or no dark at this exposure and gain).
+/// Variance of a pixel of a frame, in DN^2: dark part + net / K (EMVA 1288 release 4.0, eq 5), K = electrons_per_dn.
+[[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
+                                                  const DetectorModel& detector);
+
+}  // namespace gonio::calibration

@@ -1,0 +1,216 @@
+#include "calibration/point_budget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace gonio::calibration {
+namespace {
+
+constexpr std::array<std::string_view, kDirectionAxes> kAxisNames = {"theta_i", "theta_r", "phi_r"};
+
+/// Collects the terms of one point.
+class Terms {
+ public:
+  Terms(const PairedPoint& p, const DirectionSlopes& slopes, const InstrumentModel& instrument,
+        const ReferenceStandard& standard, ComponentTable& table)
+      : p_(p), slopes_(slopes), instrument_(instrument), standard_(standard), table_(table) {}
+
+  Budget budget() {
+    add_sample_scatter();
+    add_reference_scatter();
+    add_standard();
+    add_zeros();
+    add_detector();
+    add_lamp();
+    add_darks(p_.sample, p_.dvalue_dq);
+    add_darks(p_.reference, -p_.value / p_.reference.q);
+    return make_budget(table_.components(), std::move(random_), std::move(shared_));
+  }
+
+ private:
+  void add_random(ComponentSource source, std::string_view name, double u, std::string_view unit, double per_sd,
+                  double degrees_of_freedom = INFINITY) {
+    const std::uint32_t index = table_.index({source, 0, 0, 0}, [&] {
+      return Component{std::string(name), ComponentKind::Random, u, std::string(unit), degrees_of_freedom};
+    });
+    random_.push_back({index, per_steradian(std::abs(per_sd))});
+  }
+
+  void add_shared(const ComponentTable::Key& key, std::string name, double u, std::string_view unit, double per_sd) {
+    if (u == 0.0) return;
+    const std::uint32_t index = table_.index(key, [&] {
+      return Component{std::move(name), ComponentKind::Shared, u, std::string(unit)};
+    });
+    shared_.push_back({index, per_steradian(per_sd)});
+  }
+
+  void add_sample_scatter() {
+    const double dof = instrument_.lamp.reproducibility_dof;
+    const double u_placing = instrument_.lamp.u_reproducibility;
+    add_random(ComponentSource::SampleNoise, "noise of the sample reading", 0.0, "sr^-1",
+               p_.dvalue_dq * p_.sample.u_noise);
+    add_random(ComponentSource::SampleMonitor, "monitor noise of the sample reading", 0.0, "sr^-1",
+               p_.dvalue_dq * p_.sample.u_monitor);
+    add_random(ComponentSource::SampleReproducibility, "reproducibility of the sample reading", u_placing, "1",
+               p_.value * u_placing, dof);
+    add_random(ComponentSource::SampleAngles, "angle repeatability of the sample reading",
+               in_degrees(instrument_.angles.u_repeat), "deg", sample_repeat());
+  }
+
+  void add_reference_scatter() {
+    const double f = p_.value;
+    const double u_placing = instrument_.lamp.u_reproducibility;
+    const double noise = f * p_.reference.u_noise / p_.reference.q;
+    const double monitor = f * p_.reference.u_monitor / p_.reference.q;
+    const double repeat = f * reference_repeat();
+    if (p_.reference_is_shared) {
+      const double all = std::sqrt(noise * noise + monitor * monitor + repeat * repeat + f * f * u_placing * u_placing);
+      add_shared({ComponentSource::SharedReference, p_.reference_id, 0, 0},
+                 fmt::format("reference reading {}", p_.reference_id), 1.0, "of its own u", std::copysign(all, -f));
+      return;
+    }
+    add_random(ComponentSource::ReferenceNoise, "noise of the reference reading", 0.0, "sr^-1", noise);
+    add_random(ComponentSource::ReferenceMonitor, "monitor noise of the reference reading", 0.0, "sr^-1", monitor);
+    add_random(ComponentSource::ReferenceReproducibility, "reproducibility of the reference reading", u_placing, "1",
+               f * u_placing, instrument_.lamp.reproducibility_dof);
+    add_random(ComponentSource::ReferenceAngles, "angle repeatability of the reference reading",
+               in_degrees(instrument_.angles.u_repeat), "deg", repeat);
+  }
+
+  // d ln f_ref / d angle of the shape table, over a quarter of a degree, within the table.
+  [[nodiscard]] double reference_slope(std::size_t axis) const {
+    constexpr Angle kStep = degrees(0.25);
+    Geometry low = p_.reference.geometry;
+    Geometry high = low;
+    const auto angle = [&](Geometry& g) -> Angle& { return axis == 0 ? g.theta_i : axis == 1 ? g.theta_r : g.phi_r; };
+    angle(low) -= kStep;
+    angle(high) += kStep;
+    if (axis < 2) angle(high) = std::min(angle(high), axis == 0 ? standard_.last_theta_i() : standard_.last_theta_r());
+    const double change = standard_.shape(high) - standard_.shape(low);
+    return change / ((angle(high) - angle(low)).si() * standard_.shape(p_.reference.geometry));
+  }
+
+  // In q_ref itself the cosine of the radiance mode stays; only in the ratio of two equal zeros does it cancel.
+  [[nodiscard]] double reference_repeat() const {
+    const double u = instrument_.angles.u_repeat.si();
+    double sum = 0.0;
+    for (std::size_t a = 0; a < kDirectionAxes; ++a) {
+      const double slope = reference_slope(a) - (a == 0 ? std::tan(p_.reference.geometry.theta_i.si()) : 0.0);
+      sum += times(a) * slope * slope;
+    }
+    return u * std::sqrt(sum);
+  }
+
+  [[nodiscard]] double sample_repeat() const {
+    const double u = instrument_.angles.u_repeat.si();
+    double sum = 0.0;
+    for (std::size_t a = 0; a < kDirectionAxes; ++a) {
+      const double cosine = a == 0 ? p_.value * std::tan(p_.sample.geometry.theta_i.si()) : 0.0;
+      const double slope = slopes_.slope[a] - cosine;
+      sum += times(a) * (slope * slope + slopes_.unresolved[a] * slopes_.unresolved[a]);
+    }
+    return u * std::sqrt(sum);
+  }
+
+  // phi_r - phi_i is made of two axes, each of which stops anew at every move.
+  static double times(std::size_t axis) { return axis == 2 ? 2.0 : 1.0; }
+
+  void add_standard() {
+    const double f = p_.value;
+    add_shared({ComponentSource::Certificate, 0, 0, 0}, "certificate", p_.rho.u / p_.rho.value, "1",
+               f * p_.rho.u / p_.rho.value);
+    for (std::size_t k = 0; k < standard_.modes().size(); ++k) {
+      const ShapeMode& mode = standard_.modes()[k];
+      add_shared({ComponentSource::ShapeMode, static_cast<std::int64_t>(k), 0, 0}, "shape mode " + mode.name, mode.u,
+                 "1", f * standard_.mode(k, p_.reference.geometry) * mode.u);
+    }
+    add_shared({ComponentSource::ShapeIntegral, 0, 0, 0}, "shape integral", standard_.u_integral(), "1",
+               f * standard_.u_integral());
+  }
+
+  void add_zeros() {
+    const AngleModel& angles = instrument_.angles;
+    const std::array<Angle, kDirectionAxes> u = {angles.u_zero_theta_i, angles.u_zero_theta_r, angles.u_zero_phi_r};
+    for (std::size_t a = 0; a < kDirectionAxes; ++a) {
+      const auto axis = static_cast<std::int64_t>(a);
+      const double slope = slopes_.slope[a] - p_.value * reference_slope(a);
+      add_shared({ComponentSource::Zero, axis, 0, 0}, fmt::format("zero {}", kAxisNames[a]), in_degrees(u[a]), "deg",
+                 slope * u[a].si());
+      add_shared({ComponentSource::UnresolvedSlope, axis, 0, 0},
+                 fmt::format("zero {} through unresolved slopes", kAxisNames[a]), in_degrees(u[a]), "deg",
+                 slopes_.unresolved[a] * u[a].si());
+    }
+  }
+
+  void add_detector() {
+    const DetectorModel& d = instrument_.detector;
+    add_shared({ComponentSource::ExposureOffset, 0, 0, 0}, "exposure offset", d.exposure_offset_s.u, "s",
+               p_.value * (p_.sample.dlnq_dt0 - p_.reference.dlnq_dt0) * d.exposure_offset_s.u);
+    add_shared({ComponentSource::Linearity, 0, 0, 0}, "linearity", d.u_linearity, "1",
+               p_.value * (p_.sample.mean_net_dn - p_.reference.mean_net_dn) / d.full_scale_dn * d.u_linearity);
+  }
+
+  void add_lamp() {
+    const LampModel& lamp = instrument_.lamp;
+    const double apart = in_seconds(p_.reference.at - p_.sample.at) / lamp.correlation_s;
+    const double middle =
+        0.5 * (in_seconds(p_.reference.at.time_since_epoch()) + in_seconds(p_.sample.at.time_since_epoch()));
+    const auto interval = static_cast<std::int64_t>(std::floor(middle / lamp.correlation_s));
+    const double u = lamp.u_after_monitor * std::sqrt(-std::expm1(-0.5 * apart * apart));
+    add_shared({ComponentSource::Lamp, interval, 0, 0},
+               fmt::format("lamp after the monitor, {:.0f} s", static_cast<double>(interval) * lamp.correlation_s),
+               lamp.u_after_monitor, "1", p_.value * u);
+  }
+
+  void add_darks(const NormalisedReading& reading, double dvalue_dq) {
+    for (const DarkShare& share : reading.darks) {
+      const double per_dn = dvalue_dq * share.dq_dlevel;
+      add_dark_visit(share, share.level.before, per_dn * (1.0 - share.level.weight_after));
+      add_dark_visit(share, share.level.after, per_dn * share.level.weight_after);
+      const double drift = instrument_.detector.u_dark_drift_dn_per_s;
+      const double exposure_s = static_cast<double>(share.rung.exposure_us) * 1e-6;
+      const std::int64_t before = share.level.before == nullptr ? -1 : share.level.before->visit_id;
+      const std::int64_t after = share.level.after == nullptr ? -1 : share.level.after->visit_id;
+      add_shared({ComponentSource::DarkDrift, before, after, 0}, fmt::format("dark drift {} to {}", before, after),
+                 drift, "DN/s", per_dn * drift * exposure_s * share.level.drift_widening);
+    }
+  }
+
+  void add_dark_visit(const DarkShare& share, const DarkVisit* visit, double per_dn) {
+    if (visit == nullptr) return;
+    add_shared({ComponentSource::DarkNoise, visit->visit_id, share.rung.exposure_us, share.rung.gain_mdb},
+               fmt::format("dark visit {} at {} us", visit->visit_id, share.rung.exposure_us), visit->u_dn, "DN",
+               per_dn * visit->u_dn);
+  }
+
+  const PairedPoint& p_;
+  const DirectionSlopes& slopes_;
+  const InstrumentModel& instrument_;
+  const ReferenceStandard& standard_;
+  ComponentTable& table_;
+  std::vector<BudgetTerm> random_;
+  std::vector<BudgetTerm> shared_;
+};
+
+}  // namespace
+
+Brdf scatter(const PairedPoint& p, const InstrumentModel& instrument) {
+  const double sample = p.dvalue_dq * std::hypot(p.sample.u_noise, p.sample.u_monitor);
+  const double reference = p.value * std::hypot(p.reference.u_noise, p.reference.u_monitor) / p.reference.q;
+  const double placing = p.value * instrument.lamp.u_reproducibility;
+  return per_steradian(std::sqrt(sample * sample + reference * reference + 2.0 * placing * placing));
+}
+
+Budget point_budget(const PairedPoint& point, const DirectionSlopes& slopes, const InstrumentModel& instrument,
+                    const ReferenceStandard& standard, ComponentTable& table) {
+  return Terms(point, slopes, instrument, standard, table).budget();
+}
+
+}  // namespace gonio::calibration

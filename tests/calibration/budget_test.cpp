@@ -1,0 +1,71 @@
+#include "calibration/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gonio::calibration {
+namespace {
+
+Brdf f(double value) {
+  return per_steradian(value);
+}
+
+// JCGM 100:2008, table G.2, column 95.45 %.
+TEST(CoverageFactor, IsThatOfTheGuidesTable) {
+  const std::vector<std::pair<double, double>> rows = {{1, 13.97}, {2, 4.53},  {3, 3.31},  {4, 2.87},
+                                                       {5, 2.65},  {10, 2.28}, {20, 2.13}, {50, 2.05}};
+
+  for (const auto& [nu, k] : rows) EXPECT_NEAR(coverage_factor(nu), k, 0.0051) << nu << " degrees of freedom";
+  EXPECT_NEAR(coverage_factor(1e5), 2.0, 1e-4);
+  EXPECT_DOUBLE_EQ(coverage_factor(INFINITY), 2.0);
+}
+
+TEST(Budget, AddsRandomAndSharedPartsAsSquares) {
+  const std::vector<Component> components(3);
+
+  const Budget budget = make_budget(components, {{0, f(3.0)}}, {{1, f(-4.0)}, {2, f(12.0)}});
+
+  EXPECT_DOUBLE_EQ(budget.u_random.si(), 3.0);
+  EXPECT_DOUBLE_EQ(budget.u_shared.si(), std::sqrt(160.0));
+  EXPECT_DOUBLE_EQ(budget.u.si(), 13.0);
+  EXPECT_DOUBLE_EQ(budget.k, 2.0);
+  EXPECT_DOUBLE_EQ(budget.expanded.si(), 26.0);
+}
+
+TEST(Budget, LetsTwoSensitivitiesToTheSameErrorCancel) {
+  const std::vector<Component> components(2);
+
+  const Budget budget = make_budget(components, {}, {{1, f(5.0)}, {0, f(1.0)}, {1, f(-5.0)}});
+
+  ASSERT_EQ(budget.shared.size(), 1U);
+  EXPECT_EQ(budget.shared[0].component, 0U);
+  EXPECT_DOUBLE_EQ(budget.u.si(), 1.0);
+}
+
+// JCGM 100:2008, eq G.2b: u^4 / sum(u_i^4 / nu_i) = 25^2 / (16^2 / 8) with 3 known exactly and 4 from 9 repeats.
+TEST(Budget, TakesKFromTheEffectiveDegreesOfFreedom) {
+  std::vector<Component> components(2);
+  components[1].degrees_of_freedom = 8.0;
+
+  const Budget budget = make_budget(components, {{1, f(4.0)}}, {{0, f(3.0)}});
+
+  EXPECT_NEAR(budget.degrees_of_freedom, 625.0 / 32.0, 1e-12);
+  EXPECT_NEAR(budget.k, 2.13, 0.01);
+  EXPECT_DOUBLE_EQ(budget.expanded.si(), budget.k * 5.0);
+}
+
+TEST(WeightedSum, KeepsSharedErrorsTogetherAndRandomOnesApart) {
+  const std::vector<Component> components(3);
+  const Budget a = make_budget(components, {{0, f(3.0)}}, {{1, f(2.0)}, {2, f(1.0)}});
+  const Budget b = make_budget(components, {{0, f(4.0)}}, {{1, f(2.0)}, {2, f(-1.0)}});
+  const std::vector<SumTerm> terms = {{1.0, f(10.0), &a}, {1.0, f(20.0), &b}};
+
+  const Measured<Brdf> sum = weighted_sum(terms);
+
+  EXPECT_DOUBLE_EQ(sum.value.si(), 30.0);
+  EXPECT_DOUBLE_EQ(sum.u.si(), std::sqrt(9.0 + 16.0 + 16.0));  // component 2 cancels
+}
+
+}  // namespace
+}  // namespace gonio::calibration
