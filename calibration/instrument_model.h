@@ -15,10 +15,6 @@ struct DetectorModel {
   double u_linearity = 0.0;              ///< relative, at full scale, error growing with the signal; shared by the scan
   /// Of exposure: what interpolation between two darks may miss; shared between them.
   double u_dark_drift_dn_per_s = 0.0;
-};                         ///< t0: the light falls for exposure + t0
-double u_linearity = 0.0;  ///< relative, over the full range; shared by the scan
-double u_dark_drift_dn_per_s =
-    0.0;  ///< of exposure: what interpolation between darks may miss; shared within a dark block
 };
 
 /// Standard uncertainties (k = 1) of the directions, shared by the scan (zeros of the arms) and from move to move.
