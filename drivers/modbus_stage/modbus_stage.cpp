@@ -94,18 +94,21 @@ Result<StageState> ModbusStage::look_once() {
                     .limit = fmt::format("token {}", token_)});
   }
   auto state = stage_state_of(words, config_);
-  if (state) state->at = clock_.now();
+  if (!state) return state;
+  state->at = clock_.now();
+  shown_ = ShownTokens{state->accepted_token, state->refused_token};
   return state;
 }
 
 // A token that the stage does not show yet, neither accepted nor refused: also not one of an earlier run of the
 // program.
 Result<MotionToken> ModbusStage::fresh_motion_token() {
-  const Result<StageState> state = read_state();
-  if (!state) return failure(state.error());
+  if (!shown_) {
+    if (const Result<StageState> state = read_state(); !state) return failure(state.error());
+  }
   do {
     ++motion_token_;
-  } while (motion_token_ == 0 || motion_token_ == state->accepted_token || motion_token_ == state->refused_token);
+  } while (motion_token_ == 0 || motion_token_ == shown_->accepted || motion_token_ == shown_->refused);
   return motion_token_;
 }
 

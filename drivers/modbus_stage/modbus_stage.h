@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,12 @@ class ModbusStage final : public Stage {
   ModbusLink& link_;
   const StageConfig& config_;
   const Clock& clock_;
+  /// The motion tokens that the stage showed at the last look.
+  struct ShownTokens {
+    MotionToken accepted = 0;
+    MotionToken refused = 0;
+  };
+  std::optional<ShownTokens> shown_;
   std::uint16_t token_ = 0;       ///< of the last look
   MotionToken motion_token_ = 0;  ///< of the last motion command
 };

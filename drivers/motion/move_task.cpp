@@ -29,35 +29,31 @@ std::string motion_text(const MotionTarget& target) {
 MoveTask::MoveTask(const StageConfig& config, const StageState& before, const MotionTarget& target, MotionToken token,
                    Epoch epoch, Instant now)
     : axes_(config.axes), target_(target), watch_(before, token, epoch, motion_text(target)), started_(now) {
-  Duration travel{};
   poll_ = kLongestPoll;
   for (const stage::Axis axis : stage::kAllAxes) {
     const std::size_t i = stage::index_of(axis);
     if (!target_[i]) continue;
     const AxisConfig& how = axes_[i];
-    travel = std::max(travel, travel_time(*target_[i] - before.axes[i].position, how.speed, how.acceleration));
+    travel_ = std::max(travel_, travel_time(*target_[i] - before.axes[i].position, how.speed, how.acceleration));
     settle_ = std::max(settle_, how.settle);
     poll_ = std::min(poll_, how.settle / 4);
   }
   poll_ = std::max(poll_, kShortestPoll);
-  arrival_ = now + travel;
-  deadline_ = now + seconds(in_seconds(travel + settle_) * config.deadline_factor) + config.deadline_margin;
-}
-
-Instant MoveTask::first_look() const {
-  return std::min(arrival_, started_ + kLongestUnseen);
+  deadline_ = now + seconds(in_seconds(travel_ + settle_) * config.deadline_factor) + config.deadline_margin;
 }
 
 Result<MotionProgress> MoveTask::look(const StageState& seen, Instant now) {
   const Result<bool> accepted = watch_.look(seen);
   if (!accepted) return failure(accepted.error());
+  if (*accepted && !accepted_at_) accepted_at_ = now;
   GONIO_TRY(check_homed(seen));
   const std::optional<Instant> settled = *accepted ? settled_at(seen, now) : std::nullopt;
   if (settled && *settled <= now) return MotionProgress{true, now};
   if (is_overdue(settled, now)) return failure(late(seen, *accepted));
   Instant next = now + poll_;
   if (settled) next = std::min(next, *settled);
-  if (!settled && now < arrival_) next = std::min(now + kLongestUnseen, arrival_);
+  const Instant arrival = predicted_arrival();
+  if (accepted_at_ && !settled && now < arrival) next = std::min(now + kLongestUnseen, arrival);
   return MotionProgress{false, std::min(next, std::max(deadline_, now + kShortestPoll))};
 }
 

@@ -28,8 +28,9 @@ class MoveTask {
   /// Errors: those of MotionWatch; NotHomed; MotionLate with the axis, where it is and where it should be.
   [[nodiscard]] Result<MotionProgress> look(const StageState& seen, Instant now);
 
-  [[nodiscard]] Instant first_look() const;
-  [[nodiscard]] Instant predicted_arrival() const { return arrival_; }
+  [[nodiscard]] Instant first_look() const { return started_; }
+  /// Counted from the first look that saw the command accepted, so that it is not early.
+  [[nodiscard]] Instant predicted_arrival() const { return accepted_at_.value_or(started_) + travel_; }
   [[nodiscard]] Instant deadline() const { return deadline_; }
 
  private:
@@ -43,7 +44,8 @@ class MoveTask {
   MotionTarget target_;
   MotionWatch watch_;
   Instant started_;
-  Instant arrival_{};
+  Duration travel_{};
+  std::optional<Instant> accepted_at_;  ///< the first look that saw it
   Instant deadline_{};
   Duration poll_{};
   Duration settle_{};                ///< of the slowest named axis

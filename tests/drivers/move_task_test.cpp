@@ -52,18 +52,46 @@ class MoveTaskTest : public testing::Test {
 };
 
 TEST_F(MoveTaskTest, ComputesArrivalAndDeadlineFromTheMotion) {
+  EXPECT_EQ(task.first_look() - start, 0ms);
   EXPECT_EQ(task.predicted_arrival() - start, 2500ms);
   EXPECT_EQ(task.deadline() - start, 4900ms);
-  EXPECT_EQ(task.first_look() - start, MoveTask::kLongestUnseen);
 }
 
-TEST_F(MoveTaskTest, LooksFirstAtTheArrivalOfAShortMove) {
+TEST_F(MoveTaskTest, CountsTheTravelFromTheLookThatSawItAccepted) {
+  StageState not_yet = test::resting_state();
+  ASSERT_TRUE(look_at(0ms, not_yet));
+
+  ASSERT_TRUE(look_at(40ms, seen(0.0, true)));
+
+  EXPECT_EQ(task.predicted_arrival() - start, 2540ms);
+}
+
+TEST_F(MoveTaskTest, LooksAtALongMoveNowAndThen) {
+  const auto accepted = look_at(0ms, seen(0.0, true));
+
+  ASSERT_TRUE(accepted);
+  EXPECT_EQ(accepted->next_look - start, MoveTask::kLongestUnseen);
+}
+
+TEST_F(MoveTaskTest, LooksAgainWhenAShortMoveShouldBeOver) {
   MotionTarget near;
   near[kThetaR] = 0.05;  // 2 sqrt(0.05 / 20) = 0.1 s
+  MoveTask quick(config, test::resting_state(), near, kToken, kEpoch, start);
 
-  const MoveTask quick(config, test::resting_state(), near, kToken, kEpoch, start);
+  const auto accepted = quick.look(seen(0.0, true), start + 2ms);
 
-  EXPECT_EQ(quick.first_look() - start, 100ms);
+  ASSERT_TRUE(accepted);
+  EXPECT_EQ(accepted->next_look - start, 102ms);
+}
+
+TEST_F(MoveTaskTest, IsDoneAtTheFirstLookWhenItIsThereAndNeedsNoSettling) {
+  config.axes[kThetaR].settle = 0ms;
+  MoveTask instant(config, test::resting_state(), target(), kToken, kEpoch, start);
+
+  const auto looked = instant.look(seen(20.0, false), start);
+
+  ASSERT_TRUE(looked);
+  EXPECT_TRUE(looked->is_done);
 }
 
 TEST_F(MoveTaskTest, IsDoneWhenTheAxisStayedInItsWindowForTheSettleTime) {
