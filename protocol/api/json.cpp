@@ -179,8 +179,10 @@ Result<T> request_from_json(std::string_view text) {
   return body.get<T>();
 }
 
-std::string to_problem_json(const Error& error) {
-  return dumped(json(error));
+std::string to_problem_json(const Error& error, int http_status) {
+  json problem = error;
+  if (http_status != 0) problem["status"] = http_status;
+  return dumped(problem);
 }
 
 Error error_from_problem(int http_status, std::string_view body) {

@@ -23,8 +23,9 @@ template <class T>
 template <class T>
 [[nodiscard]] Result<T> request_from_json(std::string_view text);
 
-/// RFC 9457: the error as application/problem+json, with all its members, and back.
-[[nodiscard]] std::string to_problem_json(const Error& error);
+/// RFC 9457: the error as application/problem+json, with all its members, and back. `http_status` 0: the one of the
+/// code.
+[[nodiscard]] std::string to_problem_json(const Error& error, int http_status = 0);
 /// What an answer of another origin says (no problem+json) becomes BadReply with its status and first words.
 [[nodiscard]] Error error_from_problem(int http_status, std::string_view body);
 

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "protocol/api/reports.h"
+#include "protocol/api/requests.h"
+
+namespace gonio::daemon {
+
+/// Takes one outcome, once, from any thread, and returns at once. It may be called long after the client has gone.
+template <class T>
+using Reply = std::function<void(Result<T>)>;
+
+/// What a client may ask of a scan that is there.
+enum class ScanVerb : std::uint8_t { Pause, PauseNow, Resume, Finish, Abort, Skip };
+
+/// What stands behind the routes: the daemon as HTTP sees it.
+///
+/// Threads: `stop` is called on the HTTP event thread and must return within a millisecond. All else is called on
+/// worker threads, several at a time: it may read the store, and must not wait for an instrument. Where the answer must
+/// come from the sequencer it goes to the `Reply`; one that never comes becomes TimedOut to the client. `who`: "local"
+/// or "uid:1000".
+class Service {
+ public:
+  virtual ~Service() = default;
+
+  /// Halts all motion now. The reply comes when the halt has been acknowledged, or why it was not.
+  virtual void stop(const std::string& who, Reply<api::StopReport> reply) = 0;
+
+  /// Errors of all commands: WrongState, NotFound, Busy, and what their verb says.
+  virtual void move_stage(const api::MoveRequest& request, const std::string& who, Reply<api::CommandReport> reply) = 0;
+  virtual void home_stage(const std::string& who, Reply<api::CommandReport> reply) = 0;
+  virtual void reset_stage(const std::string& who, Reply<api::CommandReport> reply) = 0;
+  /// The reply comes when the scan is durable. The same key (not empty) again gives the scan it made then.
+  /// Errors: those of the plan, AllPointsBlocked, OutOfLimits, ReferenceExpired, ReferenceOutOfReach.
+  virtual void submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key,
+                           const std::string& who, Reply<api::CommandReport> reply) = 0;
+  virtual void change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,
+                           Reply<api::CommandReport> reply) = 0;
+
+  [[nodiscard]] virtual Result<api::StatusReport> status() = 0;
+  [[nodiscard]] virtual api::HealthReport health() = 0;
+  /// In the Prometheus text format.
+  [[nodiscard]] virtual std::string metrics() = 0;
+  /// Errors: the stage's last one, when it was never seen.
+  [[nodiscard]] virtual Result<api::StageReport> stage() = 0;
+  [[nodiscard]] virtual Result<api::PlanReport> check_plan(const api::PlanSubmission& submission) = 0;
+  [[nodiscard]] virtual Result<api::ScanList> scans() = 0;
+  [[nodiscard]] virtual Result<api::ScanReport> scan(std::int64_t scan) = 0;
+  /// Points with index > `after`.
+  [[nodiscard]] virtual Result<api::PointPage> points(std::int64_t scan, std::int64_t after, int at_most) = 0;
+  [[nodiscard]] virtual Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) = 0;
+  [[nodiscard]] virtual Result<std::string> export_csv(std::int64_t scan) = 0;
+  [[nodiscard]] virtual Result<api::ReferenceList> references() = 0;
+  /// Committed events with number > `after`, in order.
+  [[nodiscard]] virtual Result<std::vector<api::Event>> events(std::int64_t after, int at_most) = 0;
+};
+
+}  // namespace gonio::daemon

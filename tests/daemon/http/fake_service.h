@@ -1,0 +1,143 @@
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/http/service.h"
+
+namespace gonio::test {
+
+/// A service that remembers what it was asked, and keeps events. What it answers is fixed. Threads: any.
+class FakeService final : public daemon::Service {
+ public:
+  void stop(const std::string& who, daemon::Reply<api::StopReport> reply) override {
+    note("stop " + who);
+    reply(api::StopReport{.epoch = 7});
+  }
+  void move_stage(const api::MoveRequest& request, const std::string& who,
+                  daemon::Reply<api::CommandReport> reply) override {
+    note("move " + (request.theta_i_deg ? std::to_string(*request.theta_i_deg) : "-") + " " + who);
+    if (hold_replies) {
+      const std::lock_guard lock(mutex_);
+      held_.push_back(std::move(reply));
+      return;
+    }
+    reply(api::CommandReport{});
+  }
+  void home_stage(const std::string& who, daemon::Reply<api::CommandReport> reply) override {
+    note("home " + who);
+    reply(failure({.code = ErrorCode::WrongState,
+                   .device = "stage",
+                   .tried = "home",
+                   .seen = "scan 3 is running",
+                   .limit = "no scan, or one that holds"}));
+  }
+  void reset_stage(const std::string& who, daemon::Reply<api::CommandReport> reply) override {
+    note("reset " + who);
+    reply(api::CommandReport{});
+  }
+  void submit_scan(const api::PlanSubmission& submission, const std::string& key, const std::string& who,
+                   daemon::Reply<api::CommandReport> reply) override {
+    note("submit " + submission.plan_file + " [" + submission.plan + "] key=" + key + " " + who);
+    reply(api::CommandReport{.scan = 3, .existed = false});
+  }
+  void change_scan(std::int64_t scan, daemon::ScanVerb verb, const std::string& reason, const std::string& who,
+                   daemon::Reply<api::CommandReport> reply) override {
+    note("change " + std::to_string(scan) + " verb " + std::to_string(static_cast<int>(verb)) + " " + reason + " " +
+         who);
+    reply(api::CommandReport{.scan = scan});
+  }
+
+  Result<api::StatusReport> status() override {
+    api::StatusReport report{.version = "0.1.0", .instrument = "bench A", .doing = "idle"};
+    report.stage = stage_report();
+    return report;
+  }
+  api::HealthReport health() override { return {.ok = true, .version = "0.1.0"}; }
+  std::string metrics() override { return "goniod_fake 1\n"; }
+  Result<api::StageReport> stage() override { return stage_report(); }
+  Result<api::PlanReport> check_plan(const api::PlanSubmission& submission) override {
+    if (submission.plan.find("theta_i_degg") != std::string::npos) {
+      return failure({.code = ErrorCode::UnknownKey,
+                      .seen = "there is no key \"theta_i_degg\" here",
+                      .limit = "did you mean \"theta_i_deg\"?",
+                      .where = InputLocation{submission.plan_file, 5, "geometry.theta_i_degg"}});
+    }
+    return api::PlanReport{
+        .name = "wheat", .sample = "wheat-07", .points = 624, .merged = 36, .blocked = 3, .items = 1242};
+  }
+  Result<api::ScanList> scans() override { return api::ScanList{{scan_report()}}; }
+  Result<api::ScanReport> scan(std::int64_t scan) override {
+    if (scan != 3)
+      return failure({.code = ErrorCode::NotFound, .device = "store", .seen = "no scan " + std::to_string(scan)});
+    return scan_report();
+  }
+  Result<api::PointPage> points(std::int64_t, std::int64_t after, int at_most) override {
+    return api::PointPage{.points = {{.index = after + 1}}, .next_after = at_most};
+  }
+  Result<api::BrdfPage> brdf(std::int64_t, std::int64_t, int) override { return api::BrdfPage{}; }
+  Result<std::string> export_csv(std::int64_t) override { return std::string("# scan: 3\npoint,theta_i_deg\n0,30\n"); }
+  Result<api::ReferenceList> references() override { return api::ReferenceList{}; }
+  Result<std::vector<api::Event>> events(std::int64_t after, int at_most) override {
+    const std::lock_guard lock(mutex_);
+    std::vector<api::Event> found;
+    for (const api::Event& event : events_) {
+      if (event.number > after && std::ssize(found) < at_most) found.push_back(event);
+    }
+    return found;
+  }
+
+  /// Makes the next event durable and gives it back for publishing.
+  api::Event commit(const std::string& kind, const std::string& data = "{}") {
+    const std::lock_guard lock(mutex_);
+    events_.push_back({.number = std::ssize(events_) + 1, .kind = kind, .scan = 3, .who = "local", .data = data});
+    return events_.back();
+  }
+
+  std::vector<std::string> asked() const {
+    const std::lock_guard lock(mutex_);
+    return asked_;
+  }
+  void answer_held() {
+    const std::lock_guard lock(mutex_);
+    for (auto& reply : held_) reply(api::CommandReport{});
+    held_.clear();
+  }
+  std::size_t held() const {
+    const std::lock_guard lock(mutex_);
+    return held_.size();
+  }
+
+  std::atomic<bool> hold_replies{false};  ///< moves wait for answer_held
+  std::string scan_state = "running";     ///< set before the server starts
+
+ private:
+  static api::StageReport stage_report() {
+    return {.homed = true,
+            .source_shutter = "open",
+            .detector_shutter = "closed",
+            .axes = {{.name = "theta_i", .unit = "deg", .position = 30.0, .homed = true}}};
+  }
+  api::ScanReport scan_report() const {
+    return {.id = 3,
+            .name = "wheat",
+            .sample = "wheat-07",
+            .state = scan_state,
+            .points = 624,
+            .items = 1242,
+            .accepted = 621};
+  }
+  void note(std::string what) {
+    const std::lock_guard lock(mutex_);
+    asked_.push_back(std::move(what));
+  }
+
+  mutable std::mutex mutex_;
+  std::vector<std::string> asked_;
+  std::vector<api::Event> events_;
+  std::vector<daemon::Reply<api::CommandReport>> held_;
+};
+
+}  // namespace gonio::test
