@@ -126,7 +126,7 @@ long EventReader::last_number() const {
 }
 
 bool EventReader::wait_for(const std::function<bool(const std::vector<ServerEvent>&)>& condition,
-                           std::chrono::seconds deadline) {
+                           std::chrono::milliseconds deadline) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, deadline, [&] { return ended_ || condition(events_); });
   return condition(events_);

@@ -44,7 +44,8 @@ class EventReader {
   [[nodiscard]] long last_number() const;
   [[nodiscard]] bool is_connected() const { return connected_; }
   /// Waits until `condition(events)` holds; false at the deadline or when the connection has ended without it.
-  bool wait_for(const std::function<bool(const std::vector<ServerEvent>&)>& condition, std::chrono::seconds deadline);
+  bool wait_for(const std::function<bool(const std::vector<ServerEvent>&)>& condition,
+                std::chrono::milliseconds deadline);
 
  private:
   void read(int port, long after);

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
@@ -22,7 +23,8 @@ extern char** environ;
 
 namespace gonio::test {
 
-Process::Process(const std::vector<std::string>& arguments, const std::string& output_file) {
+Process::Process(const std::vector<std::string>& arguments, const std::string& output_file,
+                 const std::string& errors_file) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -30,7 +32,11 @@ Process::Process(const std::vector<std::string>& arguments, const std::string& o
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output_file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  if (errors_file.empty()) {
+    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  } else {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors_file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  }
   const int failed = posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw std::runtime_error("cannot start " + arguments[0] + ": " + std::strerror(failed));
@@ -74,6 +80,19 @@ bool Process::is_running() {
   siginfo_t info{};
   return pid_ > 0 && waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
          info.si_pid == 0;
+}
+
+Finished run_program(const std::vector<std::string>& arguments, const std::string& folder,
+                     std::chrono::seconds deadline) {
+  static std::atomic<int> count{0};
+  const std::string name = folder + "/run-" + std::to_string(++count);
+  Process process(arguments, name + ".out", name + ".err");
+  Finished finished;
+  finished.exit_code = process.wait(deadline).value_or(-1);
+  if (finished.exit_code < 0) process.kill();
+  finished.output = text_of(name + ".out");
+  finished.errors = text_of(name + ".err");
+  return finished;
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -12,8 +12,10 @@ namespace gonio::test {
 /// A child program with its output in a file. The destructor kills it (SIGKILL) and reaps it.
 class Process {
  public:
+  /// What it says goes to `output_file`, its complaints too unless they have a file of their own.
   /// Throws std::runtime_error when it cannot be started.
-  Process(const std::vector<std::string>& arguments, const std::string& output_file);
+  Process(const std::vector<std::string>& arguments, const std::string& output_file,
+          const std::string& errors_file = {});
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;
@@ -31,10 +33,21 @@ class Process {
   pid_t pid_ = -1;
 };
 
+/// What a program that has ended left behind.
+struct Finished {
+  int exit_code = -1;  ///< -1: it had not ended at the deadline and was killed
+  std::string output;
+  std::string errors;
+};
+
+/// Runs a program to its end, below `folder`, which keeps its output.
+[[nodiscard]] Finished run_program(const std::vector<std::string>& arguments, const std::string& folder,
+                                   std::chrono::seconds deadline);
+
 /// Polls `condition` every few ms until it holds; false at the deadline, which bounds hanging and is never a speed to
 /// be met.
 template <class Condition>
-bool eventually(Condition condition, std::chrono::seconds deadline);
+bool eventually(Condition condition, std::chrono::milliseconds deadline);
 
 /// A new folder below the temporary folder, removed with all its content at the end.
 class TemporaryFolder {
@@ -62,7 +75,7 @@ void pause_briefly();
 }
 
 template <class Condition>
-bool eventually(Condition condition, std::chrono::seconds deadline) {
+bool eventually(Condition condition, std::chrono::milliseconds deadline) {
   const auto end = std::chrono::steady_clock::now() + deadline;
   while (!condition()) {
     if (std::chrono::steady_clock::now() >= end) return false;

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+
+namespace gonio::test {
+
+/// What the simulator itself says of its stage: the truth behind the wire.
+struct SeenAxis {
+  double position = 0.0;  ///< own unit: deg, mm or slot
+  double target = 0.0;
+  bool moving = false;
+  bool homed = false;
+};
+struct SeenStage {
+  std::map<std::string, SeenAxis> axes;
+  bool moving = false;
+  bool homed = false;
+  bool halted = false;
+  bool heartbeat_tripped = false;
+  long fault = 0;
+  long boot_counter = 0;
+  long motion_commands = 0;  ///< accepted since power-up
+  long shutter_commands = 0;
+};
+
+/// Exposures with the same place of the stage, to 0.01 of each unit.
+struct ExposedPlace {
+  double carriage_mm = 0.0;
+  double theta_i_deg = 0.0;
+  double theta_r_deg = 0.0;
+  double phi_r_deg = 0.0;
+  long count = 0;
+};
+/// What was exposed so far, by the simulator's own count, which no restart sets back.
+struct SeenExposures {
+  long total = 0;
+  long dark = 0;
+  bool open = false;  ///< one is under way
+  std::vector<ExposedPlace> lit;
+};
+
+/// One goniosim as a process of its own. It outlives daemons, and is killed at the end. Throws std::runtime_error, with
+/// what the program said, when it does not come up or does not answer.
+class Simulator {
+ public:
+  /// Everything it writes lies below `folder`. It has a camera address of its own.
+  Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed);
+
+  [[nodiscard]] const std::string& state_folder() const { return state_; }
+  [[nodiscard]] std::string instrument_file() const { return state_ + "/instrument.toml"; }
+  [[nodiscard]] std::string reference_folder() const { return state_ + "/reference"; }
+
+  [[nodiscard]] SeenStage stage() const;
+  [[nodiscard]] SeenExposures exposures() const;
+
+  /// The camera answers nothing and sends nothing; later it is back as after a power cycle.
+  void silence_camera(bool on) const;
+  /// The stage's connections stand, and nothing is answered.
+  void silence_stage(bool on) const;
+  /// The stage's connections are closed, new ones too.
+  void refuse_stage(bool on) const;
+  /// An axis stands still, whatever its drive does.
+  void block_axis(const std::string& axis, bool on) const;
+
+ private:
+  [[nodiscard]] std::string ask(const std::string& line) const;
+  void order(const std::string& line) const;
+
+  std::string state_;
+  std::string log_;
+  Process process_;
+};
+
+}  // namespace gonio::test
