@@ -1,8 +1,8 @@
 #include "reflectance/direction.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
+
+#include <fmt/format.h>
 
 namespace gonio::reflectance {
 namespace {
@@ -13,6 +13,27 @@ constexpr double kHalfPiRest = 6.123233995736766e-17;
 
 double complement(double angle) {
   return (kHalfPi - angle) + kHalfPiRest;
+}
+
+struct Tilt {
+  double theta;
+  double elevation;
+};
+
+// The smaller of the two from the arc tangent, the other as its complement: both to full relative precision.
+Tilt tilt_of(double up, double across) {
+  if (across <= up) {
+    const double theta = std::atan2(across, up);
+    return {.theta = theta, .elevation = complement(theta)};
+  }
+  const double elevation = std::atan2(up, across);
+  return {.theta = complement(elevation), .elevation = elevation};
+}
+
+Angle phi_of(double sin_theta, Angle phi) {
+  if (sin_theta == 0.0) return {};  // the pole has no azimuth
+  const bool is_wrapped = phi.si() > -std::numbers::pi && phi.si() <= std::numbers::pi;
+  return is_wrapped ? phi : wrapped(phi);
 }
 
 bool is_quarter_turn(Angle a) {
@@ -33,7 +54,7 @@ Direction::Direction(double mu, double sin_theta, double theta, double elevation
       sin_theta_(sin_theta),
       theta_(radians(theta)),
       elevation_(radians(elevation)),
-      phi_(sin_theta > 0.0 ? wrapped(phi) : Angle{}) {}
+      phi_(phi_of(sin_theta, phi)) {}
 
 Direction Direction::from_angles(Angle theta, Angle phi) {
   assert(is_quarter_turn(theta) && std::isfinite(phi.si()));
@@ -54,12 +75,14 @@ Direction Direction::from_vector(const Vector& v) {
   assert(std::isfinite(length) && length > 0.0 && v.z >= 0.0);
   const double across = std::hypot(v.x, v.y);  // never sqrt(1 - mu^2): that has no digits near the pole
   const Angle phi = across > 0.0 ? radians(std::atan2(v.y, v.x)) : Angle{};
-  return {v.z / length, across / length, std::atan2(across, v.z), std::atan2(v.z, across), phi};
+  const Tilt tilt = tilt_of(v.z, across);
+  return {v.z / length, across / length, tilt.theta, tilt.elevation, phi};
 }
 
 Direction Direction::from_cosine(double mu, double sin_theta, Angle phi) {
   assert(mu >= 0.0 && sin_theta >= 0.0 && std::abs(std::hypot(mu, sin_theta) - 1.0) < 1e-12 && std::isfinite(phi.si()));
-  return {mu, sin_theta, std::atan2(sin_theta, mu), std::atan2(mu, sin_theta), phi};
+  const Tilt tilt = tilt_of(mu, sin_theta);
+  return {mu, sin_theta, tilt.theta, tilt.elevation, phi};
 }
 
 Result<Direction> Direction::make(Angle theta, Angle phi) {
@@ -101,7 +124,7 @@ Geometry geometry_of(const Direction& i, const Direction& r) {
 
 Direction mirrored(const Direction& i) {
   Direction turned = i;
-  turned.phi_ = i.sin_theta() > 0.0 ? wrapped(i.phi() + radians(std::numbers::pi)) : Angle{};
+  turned.phi_ = phi_of(i.sin_theta(), i.phi() + radians(std::numbers::pi));
   return turned;
 }
 

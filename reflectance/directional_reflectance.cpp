@@ -1,19 +1,15 @@
 #include "reflectance/directional_reflectance.h"
 
-#include <cmath>
 #include <optional>
 
+#include "reflectance/hemisphere_integral.h"
 #include "reflectance/polar_integral.h"
 
 namespace gonio::reflectance {
 namespace {
 
-constexpr double kClosedForm = 2e-15;  // relative error that a model may leave in its formula
-
 Integral smooth_part(const Surface& surface, const Direction& i, double tolerance) {
-  if (const std::optional<double> closed = surface.closed_rho_dh(i)) {
-    return {.value = *closed, .error = kClosedForm * std::abs(*closed)};
-  }
+  if (const std::optional<double> closed = surface.closed_rho_dh(i)) return Integral::closed(*closed);
   switch (surface.feature()) {
     case Feature::HotSpot:
       return polar_integral(surface, i, i, tolerance);
@@ -26,26 +22,39 @@ Integral smooth_part(const Surface& surface, const Direction& i, double toleranc
   return integrate_hemisphere(f, tolerance, RingSpacing::SqrtMu);
 }
 
+// The surface with source and detector changed over.
+struct Reversed {
+  Surface surface;
+  [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const { return surface.eval(r, i); }
+  [[nodiscard]] double specular(const Direction& i) const { return surface.specular(mirrored(i)); }
+  [[nodiscard]] std::string_view model() const { return surface.model(); }
+  [[nodiscard]] Parameters parameters() const { return surface.parameters(); }
+  [[nodiscard]] bool is_isotropic() const { return surface.is_isotropic(); }
+  [[nodiscard]] Feature feature() const { return surface.feature(); }
+};
+
 }  // namespace
 
 Integral rho_dh(const Surface& surface, const Direction& i, double relative_tolerance) {
   Integral total;
   if (surface.terms().empty()) {
     total = smooth_part(surface, i, relative_tolerance);
-    total.value += surface.specular(i);
+    total.add(Integral::closed(surface.specular(i)), 1.0);
     return total;
   }
-  for (const SurfaceTerm& term : surface.terms()) {
-    const Integral part = rho_dh(term.surface, i, relative_tolerance);
-    total.value += term.weight * part.value;
-    total.error += term.weight * part.error;
-    total.evaluations += part.evaluations;
-  }
+  for (const SurfaceTerm& term : surface.terms()) total.add(rho_dh(term.surface, i, relative_tolerance), term.weight);
   return total;
 }
 
 Integral rho_dh(const Surface& surface, Angle theta_i, double relative_tolerance) {
   return rho_dh(surface, Direction::from_angles(theta_i, Angle{}), relative_tolerance);
+}
+
+Integral rho_hd(const Surface& surface, const Direction& r, double relative_tolerance) {
+  if (surface.terms().empty()) return rho_dh(Reversed{surface}, r, relative_tolerance);
+  Integral total;
+  for (const SurfaceTerm& term : surface.terms()) total.add(rho_hd(term.surface, r, relative_tolerance), term.weight);
+  return total;
 }
 
 }  // namespace gonio::reflectance

@@ -3,6 +3,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "reflectance/compensated_sum.h"
+#include "reflectance/tanh_sinh.h"
+
 namespace gonio::reflectance {
 namespace {
 
@@ -34,6 +37,27 @@ FresnelReflectance fresnel(Angle theta, double n) {
   const double critical = std::asin(n);
   const double t2 = std::sin(critical - theta.si()) * std::sin(critical + theta.si()) / (n * n);
   return from_cosines(cos_theta, sin_theta, n, t2);
+}
+
+double fresnel_transmittance(double cos_theta, double sin_theta, double n) {
+  assert(n > 0.0 && std::isfinite(n) && cos_theta >= 0.0 && sin_theta >= 0.0);
+  const double t2 = (1.0 - sin_theta / n) * (1.0 + sin_theta / n);
+  if (t2 <= 0.0) return 0.0;
+  const double t = std::sqrt(t2);
+  const double across = cos_theta + n * t;
+  const double in_plane = n * cos_theta + t;
+  return 2.0 * n * cos_theta * t * (1.0 / (across * across) + 1.0 / (in_plane * in_plane));
+}
+
+double fresnel_albedo(double n) {
+  assert(n > 0.0 && std::isfinite(n));
+  if (n < 1.0) return 1.0 - (1.0 - fresnel_albedo(1.0 / n)) * n * n;
+  CompensatedSum sum;
+  for (const EndNode& node : tanh_sinh(5)) {  // the ends take up the root at grazing incidence, sharp for n close to 1
+    const double sin_theta = std::sqrt(node.rest * (1.0 + node.x));
+    sum.add(2.0 * node.weight * node.x * fresnel(node.x, sin_theta, n).unpolarised());
+  }
+  return sum.value();
 }
 
 }  // namespace gonio::reflectance

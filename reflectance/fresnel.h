@@ -21,4 +21,12 @@ struct FresnelReflectance {
 /// As above, theta in [0, 90 deg] (asserted); t^2 from sin(tc - theta) sin(tc + theta) towards the critical angle tc.
 [[nodiscard]] FresnelReflectance fresnel(Angle theta, double n);
 
+/// What passes, unpolarised: 1 - R without the subtraction, so that it keeps its digits towards the horizon and the
+/// critical angle. 0 in total reflection. Arguments as above; at cos_theta = 0 with n = 1 it is 0, as for any n.
+[[nodiscard]] double fresnel_transmittance(double cos_theta, double sin_theta, double n);
+
+/// The unpolarised reflectance for light from all directions alike, 2 integral of R mu dmu, to 1e-15 absolute. From the
+/// denser side it follows from the other: 1 - (1 - A)/n^2 (Walsh 1926, Duntley 1942).
+[[nodiscard]] double fresnel_albedo(double n);
+
 }  // namespace gonio::reflectance

@@ -2,14 +2,20 @@
 
 #include <array>
 #include <numbers>
+#include <span>
+
+#include <fmt/format.h>
 
 #include "reflectance/gauss_legendre.h"
 
 namespace gonio::reflectance {
 namespace {
 
-constexpr std::array kParameters{
-    ParameterSpec{.name = "omega0", .least = 0.0, .most = 1.0, .meaning = "single-scattering albedo"},
+constexpr ParameterSpec kOmega0{.name = "omega0", .least = 0.0, .most = 1.0, .meaning = "single-scattering albedo"};
+constexpr std::array kIsotropic{kOmega0};
+constexpr std::array kWithPhase{
+    kOmega0,
+    ParameterSpec{.name = "g", .least = -0.999999, .most = 0.999999, .meaning = "asymmetry, below 0 back-scattering"},
 };
 
 // integral of 1/(1 + b u) over [0, 1] and of u/(1 + b u), with b = 2 gamma in [0, 2].
@@ -44,32 +50,74 @@ double j_integral(double mu, double a, double b, double l1) {
 
 }  // namespace
 
-constinit const ModelSpec Hapke::kSpec{"hapke", "isotropic scatterers, eq 7 with Hapke's H", kParameters};
+constinit const ModelSpec Hapke::kSpec{"hapke", "isotropic scatterers, eq 7 with Hapke's H", kIsotropic};
 constinit const ModelSpec Hapke::kSpecAsPrinted{"hapke_as_printed", "isotropic scatterers, eq 7 with 1 + mu as printed",
-                                                kParameters};
+                                                kIsotropic};
+constinit const ModelSpec Hapke::kSpecExact{"hapke_exact", "isotropic scatterers, eq 7 with Chandrasekhar's H",
+                                            kIsotropic};
+constinit const ModelSpec Hapke::kSpecHg{"hapke_hg", "Henyey-Greenstein scatterers with Hapke's H", kWithPhase};
+constinit const ModelSpec Hapke::kSpecExactHg{"hapke_exact_hg", "Henyey-Greenstein scatterers with Chandrasekhar's H",
+                                              kWithPhase};
+
+const ModelSpec& Hapke::spec(const HapkeParameters& p) {
+  switch (p.form) {
+    case HapkeForm::AsPrinted:
+      return kSpecAsPrinted;
+    case HapkeForm::Exact:
+      return p.g == 0.0 ? kSpecExact : kSpecExactHg;
+    case HapkeForm::Hapke:
+      break;
+  }
+  return p.g == 0.0 ? kSpec : kSpecHg;
+}
 
 Hapke::Hapke(HapkeParameters p, double one_minus_omega0)
     : p_(p),
-      a_(p.form == HapkeForm::Hapke ? 2.0 : 1.0),
+      phase_(p.g),
+      a_(p.form == HapkeForm::AsPrinted ? 1.0 : 2.0),
       b_(2.0 * std::sqrt(one_minus_omega0)),
-      scale_(p.omega0 / (4.0 * std::numbers::pi)) {}
-
-Result<Hapke> Hapke::make(HapkeParameters p) {
-  GONIO_TRY(check_values(spec(p.form), std::array{p.omega0}));
-  return Hapke(p, 1.0 - p.omega0);
+      scale_(p.omega0 / (4.0 * std::numbers::pi)) {
+  if (p.form == HapkeForm::Exact) exact_.emplace(one_minus_omega0);
 }
 
-Result<Hapke> Hapke::make_from_co_albedo(double one_minus_omega0, HapkeForm form) {
-  const HapkeParameters p{.omega0 = 1.0 - one_minus_omega0, .form = form};
-  GONIO_TRY(check_values(spec(form), std::array{p.omega0}));
+Result<Hapke> Hapke::make(HapkeParameters p) {
+  return make_checked(p, 1.0 - p.omega0);
+}
+
+Result<Hapke> Hapke::make_from_co_albedo(double one_minus_omega0, HapkeForm form, double g) {
+  return make_checked({.omega0 = 1.0 - one_minus_omega0, .form = form, .g = g}, one_minus_omega0);
+}
+
+Result<Hapke> Hapke::make_checked(HapkeParameters p, double one_minus_omega0) {
+  const std::array values{p.omega0, p.g};
+  GONIO_TRY(check_values(spec(p), std::span(values).first(spec(p).parameters.size())));
+  if (p.form == HapkeForm::AsPrinted && p.g != 0.0) {
+    return failure({.code = ErrorCode::InvalidInput,
+                    .tried = "make a surface \"hapke_as_printed\"",
+                    .seen = fmt::format("g = {}", p.g),
+                    .limit = "0: with 1 + mu as printed and any other g the BRDF goes negative",
+                    .where = InputLocation{.file = {}, .field = "g"}});
+  }
   return Hapke(p, one_minus_omega0);
 }
 
+Parameters Hapke::parameters() const {
+  Parameters parameters{{"omega0", p_.omega0}};
+  if (p_.g != 0.0) parameters.push_back({"g", p_.g});
+  return parameters;
+}
+
 // f mu_r = scale H(mu) h(u) (1 - mu/(u + mu)), integrated over u = mu_r in [0, 1] and 2 pi of azimuth.
-double Hapke::rho_dh(const Direction& i) const {
+std::optional<double> Hapke::rho_dh(const Direction& i) const {
+  if (p_.g != 0.0) return std::nullopt;
   const double mu = clamped_mu(i);
+  if (exact_) {
+    // 1 - gamma H as (1 - gamma) - gamma (H - 1): a dark medium keeps its digits.
+    const double gamma = 0.5 * b_;
+    return p_.omega0 / (1.0 + gamma) - gamma * std::expm1(exact_->log(mu));
+  }
   const auto [l1, l2] = moments(b_);
-  return 0.5 * p_.omega0 * h(mu) * (l1 + a_ * l2 - mu * j_integral(mu, a_, b_, l1));
+  return 0.5 * p_.omega0 * approximate_h(mu) * (l1 + a_ * l2 - mu * j_integral(mu, a_, b_, l1));
 }
 
 }  // namespace gonio::reflectance

@@ -5,16 +5,9 @@
 #include <vector>
 
 #include "reflectance/direction.h"
+#include "reflectance/integral.h"
 
 namespace gonio::reflectance {
-
-/// A computed integral. `error` estimates |value - truth| from the last refinement, rounding included: it is meant to
-/// be an upper bound, and stands above the asked tolerance when the work's bound was reached first.
-struct Integral {
-  double value = 0.0;
-  double error = 0.0;
-  std::uint64_t evaluations = 0;  ///< of the integrand; 0 for a closed form
-};
 
 /// A direction with its share of the projected solid angle mu dOmega; the weights of a hemisphere sum to pi.
 struct HemisphereNode {

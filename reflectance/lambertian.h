@@ -22,6 +22,10 @@ class Lambertian {
 
   [[nodiscard]] Brdf eval(const Direction&, const Direction&) const { return f_; }
   [[nodiscard]] double rho_dh(const Direction&) const { return p_.rho; }
+  [[nodiscard]] double albedo() const { return p_.rho; }
+  [[nodiscard]] DirectionSample sample(const Direction&, UnitPoint draw) const {
+    return {.r = power_cosine_direction(0.0, draw), .weight = p_.rho};
+  }
 
   [[nodiscard]] std::string_view model() const { return kSpec.name; }
   [[nodiscard]] Parameters parameters() const { return {{"rho", p_.rho}}; }

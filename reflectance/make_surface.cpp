@@ -1,17 +1,19 @@
 #include "reflectance/make_surface.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "reflectance/fresnel_mirror.h"
 #include "reflectance/glint.h"
 #include "reflectance/hapke.h"
 #include "reflectance/lambertian.h"
 #include "reflectance/minnaert.h"
 #include "reflectance/rpv.h"
+#include "reflectance/water_body.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -31,7 +33,7 @@ Result<Surface> as_surface(Result<M> model) {
 
 template <HapkeForm form>
 Result<Surface> make_hapke(Values v) {
-  return as_surface(Hapke::make({.omega0 = v[0], .form = form}));
+  return as_surface(Hapke::make({.omega0 = v[0], .form = form, .g = v.size() > 1 ? v[1] : 0.0}));
 }
 
 template <RpvNorm norm>
@@ -64,8 +66,14 @@ std::span<const Row> rows() {
       Row{Minnaert::kSpec, [](Values v) { return as_surface(Minnaert::make({.rho = v[0], .k = v[1]})); }},
       Row{Hapke::kSpec, make_hapke<HapkeForm::Hapke>},
       Row{Hapke::kSpecAsPrinted, make_hapke<HapkeForm::AsPrinted>},
+      Row{Hapke::kSpecExact, make_hapke<HapkeForm::Exact>},
+      Row{Hapke::kSpecHg, make_hapke<HapkeForm::Hapke>},
+      Row{Hapke::kSpecExactHg, make_hapke<HapkeForm::Exact>},
       Row{Rpv::kSpec, make_rpv<RpvNorm::Brdf>},
       Row{Rpv::kSpecBrf, make_rpv<RpvNorm::Brf>},
+      Row{FresnelMirror::kSpec, [](Values v) { return as_surface(FresnelMirror::make({.refractive_index = v[0]})); }},
+      Row{WaterBody::kSpec,
+          [](Values v) { return as_surface(WaterBody::make({.rho_w = v[0], .refractive_index = v[1]})); }},
       Row{kCoxMunk, make_cox_munk<Shadowing::None>},
       Row{kCoxMunkSmith, make_cox_munk<Shadowing::Smith>},
       Row{Glint::kSpec, make_glint<Shadowing::None>},

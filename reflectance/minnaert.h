@@ -30,6 +30,12 @@ class Minnaert {
   [[nodiscard]] double rho_dh(const Direction& i) const {
     return 2.0 * p_.rho * std::pow(clamped_mu(i), p_.k) / (p_.k + 2.0);
   }
+  /// 4 rho / (k + 2)^2.
+  [[nodiscard]] double albedo() const { return 4.0 * p_.rho / ((p_.k + 2.0) * (p_.k + 2.0)); }
+  /// mu_r = u^(1/(k + 2)) (Mobley 2005, last formula of appendix C).
+  [[nodiscard]] DirectionSample sample(const Direction& i, UnitPoint draw) const {
+    return {.r = power_cosine_direction(p_.k, draw), .weight = rho_dh(i)};
+  }
 
   [[nodiscard]] std::string_view model() const { return kSpec.name; }
   [[nodiscard]] Parameters parameters() const { return {{"rho", p_.rho}, {"k", p_.k}}; }

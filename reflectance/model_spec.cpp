@@ -1,9 +1,9 @@
 #include "reflectance/model_spec.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace gonio::reflectance {
 

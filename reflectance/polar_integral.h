@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reflectance/hemisphere_integral.h"
+#include "reflectance/integral.h"
 #include "reflectance/surface.h"
 
 namespace gonio::reflectance {

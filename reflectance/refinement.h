@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "reflectance/compensated_sum.h"
-#include "reflectance/hemisphere_integral.h"
+#include "reflectance/integral.h"
 
 namespace gonio::reflectance {
 
@@ -17,13 +17,22 @@ class RuleSum {
     size_.add(std::abs(term));
     ++evaluations_;
   }
+  /// A term that is itself an integral: its error and cost are carried along.
+  void add(const Integral& part, double weight) {
+    value_.add(weight * part.value);
+    size_.add(std::abs(weight * part.value));
+    error_ += weight * part.error;
+    evaluations_ += part.evaluations;
+  }
   [[nodiscard]] double value() const { return value_.value(); }
   [[nodiscard]] double size() const { return size_.value(); }
+  [[nodiscard]] double error() const { return error_; }
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
 
  private:
   CompensatedSum value_;
   CompensatedSum size_;
+  double error_ = 0.0;  ///< of the terms
   std::uint64_t evaluations_ = 0;
 };
 
@@ -37,7 +46,7 @@ template <class AtLevel>
   for (int level = first + 1; level <= last; ++level) {
     const RuleSum fine = at_level(level);
     result.value = fine.value();
-    result.error = std::abs(fine.value() - coarse.value()) + kRounding * fine.size();
+    result.error = std::abs(fine.value() - coarse.value()) + fine.error() + kRounding * fine.size();
     result.evaluations += fine.evaluations();
     if (result.error <= relative_tolerance * fine.size()) break;
     coarse = fine;

@@ -14,6 +14,7 @@
 
 #include "base/units.h"
 #include "reflectance/direction.h"
+#include "reflectance/direction_sample.h"
 
 namespace gonio::reflectance {
 
@@ -42,6 +43,8 @@ enum class Feature : std::uint8_t {
 /// and where it applies
 ///   rho_dh(i)        the smooth part's directional-hemispherical reflectance, where it has a closed form
 ///   specular(i)      the share of the light from i that leaves in mirrored(i) exactly, a delta in the BRDF (eq 9)
+///   albedo()         the Bond albedo, mirror part included, where it has a closed form
+///   sample(i, draw)  a direction drawn by an inverse in closed form
 ///   feature()        else Smooth
 /// All are pure: threads any.
 template <class M>
@@ -73,6 +76,13 @@ class Surface {
   /// The share of the light from i that leaves exactly in the direction mirrored(i); 0 without a mirror part.
   [[nodiscard]] double specular(const Direction& i) const { return model_->specular(i); }
 
+  /// The Bond albedo, mirror part included, where a formula gives it.
+  [[nodiscard]] std::optional<double> closed_albedo() const { return model_->closed_albedo(); }
+  /// A direction drawn in proportion to f mu_r, where an inverse in closed form gives it.
+  [[nodiscard]] std::optional<DirectionSample> closed_sample(const Direction& i, UnitPoint draw) const {
+    return model_->closed_sample(i, draw);
+  }
+
   [[nodiscard]] std::string_view model() const { return model_->model(); }
   [[nodiscard]] Parameters parameters() const { return model_->parameters(); }
   [[nodiscard]] bool is_isotropic() const { return model_->is_isotropic(); }
@@ -94,6 +104,8 @@ class Surface {
     virtual void eval(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const = 0;
     virtual std::optional<double> closed_rho_dh(const Direction& i) const = 0;
     virtual double specular(const Direction& i) const = 0;
+    virtual std::optional<double> closed_albedo() const = 0;
+    virtual std::optional<DirectionSample> closed_sample(const Direction& i, UnitPoint draw) const = 0;
     virtual std::string_view model() const = 0;
     virtual Parameters parameters() const = 0;
     virtual bool is_isotropic() const = 0;
@@ -141,6 +153,20 @@ struct Surface::Holder final : Surface::Interface {
       return model_value.specular(i);
     else
       return 0.0;
+  }
+
+  std::optional<double> closed_albedo() const override {
+    if constexpr (requires { model_value.albedo(); })
+      return model_value.albedo();
+    else
+      return std::nullopt;
+  }
+
+  std::optional<DirectionSample> closed_sample(const Direction& i, UnitPoint draw) const override {
+    if constexpr (requires { model_value.sample(i, draw); })
+      return model_value.sample(i, draw);
+    else
+      return std::nullopt;
   }
 
   std::string_view model() const override { return model_value.model(); }

@@ -1,9 +1,9 @@
 #include "reflectance/surface_sum.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace gonio::reflectance {
 

@@ -61,6 +61,56 @@ TEST(RhoDh, IsClosedForHapkesOwnForm) {
               {{0, "1.03972077083992"}, {30, "1.03083132278769"}, {60, "1"}, {85, "0.965330864519818"}});
 }
 
+TEST(RhoDh, IsClosedForChandrasekharsH) {
+  expect_rows(
+      surface("hapke_exact", {{"omega0", 0.9}}), 1e-14,
+      {{0, "0.414947479130817"}, {30, "0.436123541359631"}, {60, "0.507938906940098"}, {85, "0.634860024266183"}});
+  expect_rows(
+      surface("hapke_exact", {{"omega0", 0.5}}), 1e-14,
+      {{0, "0.115225877707205"}, {30, "0.124479360165716"}, {60, "0.160144433435235"}, {85, "0.246339119211403"}});
+  expect_rows(surface("hapke_exact", {{"omega0", 1.0}}), 1e-14, {{0, "1"}, {85, "1"}});
+}
+
+// f of another surface and nothing else of it, so that only quadrature is left.
+struct FormulaHidden {
+  Surface surface;
+  [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const { return surface.eval(i, r); }
+  [[nodiscard]] std::string_view model() const { return "hidden"; }
+  [[nodiscard]] Parameters parameters() const { return {}; }
+  [[nodiscard]] bool is_isotropic() const { return surface.is_isotropic(); }
+};
+
+TEST(RhoDh, IsTheSameByFormulaAsByQuadrature) {
+  for (const char* model : {"hapke", "hapke_as_printed", "hapke_exact"}) {
+    const Surface closed = surface(model, {{"omega0", 0.9}});
+    const Integral rings = rho_dh(FormulaHidden{closed}, 40.0_deg, 1e-11);
+    EXPECT_GT(rings.evaluations, 0u);
+    EXPECT_NEAR(rings.value, rho_dh(closed, 40.0_deg).value, 1e-11) << model;
+  }
+  const Surface body = surface("water_body", {{"rho_w", 0.3}, {"refractive_index", 1.34}});
+  EXPECT_NEAR(rho_dh(FormulaHidden{body}, 40.0_deg, 1e-9).value, rho_dh(body, 40.0_deg).value, 1e-9);
+}
+
+TEST(RhoDh, DoesNotDependOnTheMethodForAPhaseFunction) {
+  // g on either side of where the method changes from rings to polar coordinates.
+  const auto at = [](double g) {
+    return rho_dh(surface("hapke_hg", {{"omega0", 0.9}, {"g", g}}), 50.0_deg, 1e-11).value;
+  };
+  EXPECT_NEAR(at(-0.5), at(std::nextafter(-0.5, -1.0)), 1e-11);
+}
+
+TEST(RhoDh, CountsTheMirrorPart) {
+  const Surface mirror = surface("fresnel_mirror", {{"refractive_index", 1.34}});
+  const Surface body = surface("water_body", {{"rho_w", 1.0}, {"refractive_index", 1.34}});
+  const Surface both = SurfaceSum::make({{mirror, 1.0}, {body, 1.0}}).value();
+
+  EXPECT_TRUE(agrees(rho_dh(mirror, 60.0_deg).value, "0.0610048547310245", 1e-14));
+  // What a loss-free body does not send up is mirrored: everything comes back, at every angle.
+  for (const double theta : {0.0, 30.0, 60.0, 89.0, 89.99}) {
+    EXPECT_NEAR(rho_dh(both, degrees(theta)).value, 1.0, 1e-14) << theta;
+  }
+}
+
 TEST(RhoDh, MatchesTheReferenceForWheat) {
   expect_rows(wheat(), 1e-12, {{0, "0.742575513854292"}, {30, "0.734215727909711"}, {60, "0.712386680567085"}});
   expect_rows(

@@ -90,5 +90,27 @@ TEST(Fresnel, IsNothingWithoutAContrastAndKeepsItsDigitsWithAFaintOne) {
   EXPECT_DOUBLE_EQ(fresnel(0.0_deg, 1.0 + faint).unpolarised(), (faint / (2.0 + faint)) * (faint / (2.0 + faint)));
 }
 
+TEST(Fresnel, PassesWhatItDoesNotReflect) {
+  for (const double theta : {0.0, 0.3, 0.7, 1.2, 1.5}) {
+    for (const double n : {1.0, 1.34, 1.0 / 1.34, 2.4}) {
+      const double reflected = fresnel(std::cos(theta), std::sin(theta), n).unpolarised();
+      EXPECT_NEAR(fresnel_transmittance(std::cos(theta), std::sin(theta), n), 1.0 - reflected, 1e-15);
+    }
+  }
+  // Close to the horizon T = 2 c (n^2 + 1) / sqrt(n^2 - 1), where 1 - R has nothing left.
+  const double c = 1e-18;
+  const double n = 1.34;
+  EXPECT_NEAR(fresnel_transmittance(c, 1.0, n) / (2.0 * c * (n * n + 1.0) / std::sqrt(n * n - 1.0)), 1.0, 1e-15);
+}
+
+TEST(Fresnel, MatchesTheReferenceForLightFromEverywhere) {
+  EXPECT_TRUE(agrees(fresnel_albedo(1.34), "0.067510612213279929", 1e-15));
+  EXPECT_TRUE(agrees(fresnel_albedo(1.0 / 1.34), "0.480680893413499626", 1e-15));
+  EXPECT_TRUE(agrees(fresnel_albedo(1.33), "0.0659308492994054", 1e-15));
+  EXPECT_TRUE(agrees(fresnel_albedo(1.5), "0.0917779593423512", 1e-15));
+  EXPECT_TRUE(agrees(fresnel_albedo(1.0001), "0.000033291731246212696", 1e-12));
+  EXPECT_NEAR(fresnel_albedo(1.0), 0.0, 1e-15);
+}
+
 }  // namespace
 }  // namespace gonio::reflectance

@@ -9,6 +9,7 @@
 #include "reflectance/directional_reflectance.h"
 #include "reflectance/fresnel.h"
 #include "reflectance/hapke.h"
+#include "reflectance/hemisphere_integral.h"
 #include "reflectance/henyey_greenstein.h"
 #include "surfaces.h"
 
@@ -207,6 +208,17 @@ TEST(HardCase, FresnelAtNormalIncidenceAndBeyondTheCriticalAngle) {
   EXPECT_TRUE(std::isnan(by_sines(0.0, 0.0)));
   EXPECT_EQ(fresnel(radians(1.0), 1.0 / n).unpolarised(), 1.0);
   EXPECT_TRUE(std::isnan(by_sines(1.0, std::asin(std::sin(1.0) * n))));
+}
+
+TEST(HardCase, AMirrorWhichNoGridWouldMeet) {
+  // What a quadrature of eval finds of it is nothing; rho_dh has it all the same.
+  const Surface mirror = surface("fresnel_mirror", {{"refractive_index", 1.34}});
+  double grid = 0.0;
+  for (const HemisphereNode& node : gauss_rings(16, 32))
+    grid += node.weight_sr * mirror.eval(at(0.5), node.direction).si();
+
+  EXPECT_EQ(grid, 0.0);
+  EXPECT_EQ(rho_dh(mirror, at(0.5)).value, fresnel(std::cos(0.5), std::sin(0.5), 1.34).unpolarised());
 }
 
 TEST(HardCase, ANarrowLobeThatACoarseGridMisses) {

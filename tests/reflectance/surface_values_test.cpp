@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "printed.h"
+#include "reflectance/hapke.h"
 #include "surfaces.h"
 
 namespace gonio::reflectance {
@@ -56,6 +57,35 @@ TEST(Hapke, MatchesTheReferenceInBothForms) {
       {{30, 0, 0, "0.0566928341897537"}, {30, 30, 0, "0.0601064249033492"}, {30, 60, 0, "0.0720374813270021"}});
   expect_points(surface("hapke", {{"omega0", 0.9}}),
                 {{30, 0, 0, "0.124506105155933"}, {30, 30, 0, "0.128843744102195"}, {30, 60, 0, "0.140626923681759"}});
+}
+
+TEST(Hapke, MatchesTheReferenceWithHenyeyAndGreensteinsPhaseFunction) {
+  expect_points(
+      surface("hapke_hg", {{"omega0", 0.9}, {"g", -0.3}}),
+      {{30, 0, 0, "0.167203507657713"}, {30, 30, 180, "0.141082721635402"}, {30, 60, 180, "0.130122882500356"}});
+}
+
+TEST(Hapke, MatchesTheReferenceWithChandrasekharsH) {
+  // With the H of 30 digits.
+  expect_points(surface("hapke_exact", {{"omega0", 0.9}}), {{30, 0, 0, "0.126617551814542238"},
+                                                            {30, 30, 180, "0.131474020864090284"},
+                                                            {30, 60, 180, "0.145471145962881675"}});
+  expect_points(surface("hapke_exact_hg", {{"omega0", 0.9}, {"g", -0.3}}), {{30, 0, 0, "0.169314954316322411"},
+                                                                            {30, 30, 180, "0.143712998397297998"},
+                                                                            {30, 60, 180, "0.134967104781478389"}});
+}
+
+TEST(Hapke, IsTheIsotropicOneWithoutAsymmetry) {
+  const Surface hg = surface("hapke_hg", {{"omega0", 0.9}, {"g", 0.0}});
+  EXPECT_EQ(hg.model(), "hapke");
+  EXPECT_EQ(hg.eval(geometry(30, 60, 10)), surface("hapke", {{"omega0", 0.9}}).eval(geometry(30, 60, 10)));
+}
+
+TEST(Hapke, RefusesAnAsymmetryWithTheFormAsPrinted) {
+  const Result<Hapke> refused = Hapke::make({.omega0 = 0.9, .form = HapkeForm::AsPrinted, .g = -0.3});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(refused.error().where->field, "g");
 }
 
 TEST(Hapke, KnowsNoAzimuth) {
@@ -123,6 +153,25 @@ TEST(Glint, LosesWhatFacetsHideOnlyTowardsTheHorizon) {
 TEST(Glint, TakesItsSlopeVarianceFromTheWind) {
   const Surface by_variance = surface("glint", {{"slope_variance", 0.0542}, {"refractive_index", 1.34}});
   EXPECT_EQ(by_variance.eval(geometry(30, 40, 170)), sea().eval(geometry(30, 40, 170)));
+}
+
+TEST(WaterBody, MatchesTheReference) {
+  expect_points(surface("water_body", {{"rho_w", 0.02}, {"refractive_index", 1.34}}),
+                {{30, 45, 77, "0.00339964174142800"}});
+}
+
+TEST(FresnelMirror, NeverHidesInEval) {
+  const Surface mirror = surface("fresnel_mirror", {{"refractive_index", 1.34}});
+  const Direction i = Direction::from_angles(degrees(60), degrees(10));
+
+  EXPECT_EQ(mirror.eval(i, mirrored(i)), Brdf());
+  EXPECT_TRUE(agrees(mirror.specular(i), "0.0610048547310245", 1e-14));
+}
+
+TEST(FresnelMirror, ReflectsAllFromTheDenserSideBeyondTheCriticalAngle) {
+  const Surface from_below = surface("fresnel_mirror", {{"refractive_index", 1.0 / 1.34}});
+  EXPECT_EQ(from_below.specular(Direction::from_angles(radians(std::asin(1.0 / 1.34)), {})), 1.0);
+  EXPECT_LT(from_below.specular(Direction::from_angles(degrees(48.268), {})), 1.0);
 }
 
 }  // namespace
