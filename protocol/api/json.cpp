@@ -215,6 +215,7 @@ GONIO_REPORT(PlanReport);
 GONIO_REPORT(PointPage);
 GONIO_REPORT(BrdfPage);
 GONIO_REPORT(ScanList);
+GONIO_REPORT(ReferenceReport);
 GONIO_REPORT(ReferenceList);
 GONIO_REPORT(Event);
 GONIO_REPORT(StopReport);

@@ -53,6 +53,8 @@ class FakeService final : public daemon::Service {
   Result<api::StatusReport> status() override {
     api::StatusReport report{.version = "0.1.0", .instrument = "bench A", .doing = "idle"};
     report.stage = stage_report();
+    const std::lock_guard lock(mutex_);
+    report.last_event = std::ssize(events_);
     return report;
   }
   api::HealthReport health() override { return {.ok = true, .version = "0.1.0"}; }

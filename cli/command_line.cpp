@@ -1,0 +1,138 @@
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "cli/invocation.h"
+
+namespace gonio::cli {
+namespace {
+
+const std::map<std::string, Format> kFormats{
+    {"table", Format::Table}, {"json", Format::Json}, {"jsonl", Format::Jsonl}, {"csv", Format::Csv}};
+
+// The grammar of gonioctl, filling one Invocation.
+class CommandLine {
+ public:
+  explicit CommandLine(Invocation& wanted) : wanted_(wanted) {
+    app_.require_subcommand(1);
+    app_.fallthrough();
+    app_.set_version_flag("--version", "gonioctl 0.1.0");
+    app_.add_option("--connect", wanted.connect, "the daemon: http://ADDRESS:PORT or unix:PATH ($GONIOD_CONNECT)")
+        ->capture_default_str();
+    app_.add_option("-o,--output", wanted.format, "table, json, jsonl or csv")
+        ->transform(CLI::CheckedTransformer(kFormats, CLI::ignore_case));
+    leaf(app_, "status", "what the instrument does", Verb::Status);
+    leaf(app_, "stop", "STOP: halt all motion now, in every state", Verb::Stop);
+    add_stage();
+    add_plan();
+    add_scan();
+    add_data();
+    CLI::App& events = *leaf(app_, "events", "what was committed, one event a line", Verb::Events);
+    events.add_flag("-f,--follow", wanted.follow, "wait for more");
+    events.add_option("--after", wanted.after, "begin after this event's number")->check(CLI::NonNegativeNumber);
+    CLI::App& reference = group("reference", "reference standards");
+    leaf(reference, "list", "the standards this daemon knows", Verb::ReferenceList);
+  }
+
+  [[nodiscard]] CLI::App& app() { return app_; }
+
+ private:
+  CLI::App& group(const std::string& name, const std::string& help) {
+    CLI::App& made = *app_.add_subcommand(name, help);
+    made.require_subcommand(1);
+    made.fallthrough();
+    return made;
+  }
+
+  CLI::App* leaf(CLI::App& parent, const std::string& name, const std::string& help, Verb verb) {
+    CLI::App* made = parent.add_subcommand(name, help);
+    made->fallthrough();
+    made->callback([this, verb] { wanted_.verb = verb; });
+    return made;
+  }
+
+  CLI::App& scan_leaf(CLI::App& parent, const std::string& name, const std::string& help, Verb verb) {
+    CLI::App& made = *leaf(parent, name, help, verb);
+    made.add_option("scan", wanted_.scan, "the scan's number")->required()->check(CLI::PositiveNumber);
+    return made;
+  }
+
+  void add_stage() {
+    CLI::App& stage = *app_.add_subcommand("stage", "the stage: where it is, moves by hand");
+    stage.fallthrough();
+    stage.require_subcommand(0, 1);
+    stage.preparse_callback([this](std::size_t) { wanted_.verb = Verb::StageShow; });
+    leaf(stage, "show", "where it is", Verb::StageShow);
+    CLI::App& move = *leaf(stage, "move", "move the named axes, and wait until they stand", Verb::StageMove);
+    api::MoveRequest& to = wanted_.move;
+    move.add_option("--theta-i", to.theta_i_deg, "source arm, deg");
+    move.add_option("--theta-r", to.theta_r_deg, "detector arm, deg");
+    move.add_option("--phi-r", to.phi_r_deg, "detector azimuth, deg");
+    move.add_option("--phi-i", to.phi_i_deg, "sample azimuth, deg");
+    move.add_option("--carriage", to.carriage_mm, "sample carriage, mm");
+    move.add_option("--filter", to.filter_wheel_slot, "filter wheel, slot");
+    move.add_option("--source-shutter-open", to.source_shutter_open, "true or false");
+    move.add_option("--detector-shutter-open", to.detector_shutter_open, "true or false");
+    leaf(stage, "home", "find the home position of all axes", Verb::StageHome);
+    leaf(stage, "reset", "clear STOP, heartbeat trip and faults; moves nothing", Verb::StageReset);
+  }
+
+  void add_plan() {
+    CLI::App& plan = group("plan", "measurement plans");
+    CLI::App& check = *leaf(plan, "check", "dry run: points, time, refusals; nothing moves", Verb::PlanCheck);
+    check.add_option("file", wanted_.file, "plan.toml")->required();
+  }
+
+  void add_scan() {
+    CLI::App& scan = group("scan", "scans: plans being run");
+    CLI::App& run = *leaf(scan, "run", "queue a plan", Verb::ScanRun);
+    run.add_option("file", wanted_.file, "plan.toml")->required();
+    run.add_flag("--watch", wanted_.watch, "show progress until it ends");
+    run.add_option("--key", wanted_.key, "the same key again gives the same scan");
+    leaf(scan, "list", "all scans, newest first", Verb::ScanList);
+    scan_leaf(scan, "show", "one scan", Verb::ScanShow);
+    scan_leaf(scan, "watch", "progress until it ends", Verb::ScanWatch);
+    CLI::App& pause = scan_leaf(scan, "pause", "wait after the item in hand", Verb::ScanPause);
+    pause.add_flag("--now", wanted_.now, "drop the item in hand");
+    pause.add_option("--reason", wanted_.reason, "for the record");
+    scan_leaf(scan, "resume", "clear the holds and go on", Verb::ScanResume);
+    scan_leaf(scan, "finish", "end early, keep the data", Verb::ScanFinish);
+    scan_leaf(scan, "abort", "end at once", Verb::ScanAbort).add_option("--reason", wanted_.reason, "for the record");
+    scan_leaf(scan, "skip", "give up the item in hand", Verb::ScanSkip);
+  }
+
+  void add_data() {
+    CLI::App& data = group("data", "results");
+    CLI::App& exported = scan_leaf(data, "export", "BRDF with uncertainty, as a file", Verb::DataExport);
+    exported.add_option("--format", export_format_, "csv")->check(CLI::IsMember({"csv"}));
+    wanted_.file = "-";
+    exported.add_option("-o,--file", wanted_.file, "where to; - is standard output");
+  }
+
+  Invocation& wanted_;
+  CLI::App app_{"gonioctl asks goniod, the daemon of a gonioreflectometer.", "gonioctl"};
+  std::string export_format_ = "csv";
+};
+
+}  // namespace
+
+tl::expected<Invocation, Advice> read_command_line(const std::vector<std::string>& arguments,
+                                                   const std::string& default_connect) {
+  Invocation wanted;
+  wanted.connect = default_connect;
+  CommandLine line(wanted);
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  try {
+    line.app().parse(reversed);
+  } catch (const CLI::ParseError& e) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const bool asked_for = line.app().exit(e, out, err) == 0;
+    return tl::unexpected<Advice>({asked_for ? out.str() : err.str(), asked_for ? 0 : 2});
+  }
+  return wanted;
+}
+
+}  // namespace gonio::cli

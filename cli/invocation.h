@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "cli/output.h"
+#include "protocol/api/requests.h"
+
+namespace gonio::cli {
+
+enum class Verb : std::uint8_t {
+  Status,
+  Stop,
+  StageShow,
+  StageMove,
+  StageHome,
+  StageReset,
+  PlanCheck,
+  ScanRun,
+  ScanList,
+  ScanShow,
+  ScanWatch,
+  ScanPause,
+  ScanResume,
+  ScanFinish,
+  ScanAbort,
+  ScanSkip,
+  DataExport,
+  ReferenceList,
+  Events,
+};
+
+/// What the command line asks for.
+struct Invocation {
+  Verb verb = Verb::Status;
+  std::string connect;
+  Format format = Format::Table;
+  std::int64_t scan = 0;
+  std::string file;  ///< a plan, or where an export goes ("-": standard output)
+  bool watch = false;
+  bool now = false;        ///< pause
+  bool follow = false;     ///< events
+  std::int64_t after = 0;  ///< events
+  std::string reason;
+  std::string key;  ///< Idempotency-Key; empty: a new one
+  api::MoveRequest move;
+};
+
+/// Something to be printed instead: help or version (to standard output, exit code 0), or why the line is wrong (2).
+struct Advice {
+  std::string text;
+  int exit_code = 0;
+};
+
+/// Reads the arguments after the program's name. `default_connect`: of the environment, or the usual address.
+[[nodiscard]] tl::expected<Invocation, Advice> read_command_line(const std::vector<std::string>& arguments,
+                                                                 const std::string& default_connect);
+
+}  // namespace gonio::cli

@@ -1,0 +1,232 @@
+#include "cli/run.h"
+
+#include <sys/random.h>
+
+#include <array>
+#include <ostream>
+
+#include "cli/daemon_client.h"
+#include "cli/files.h"
+#include "cli/invocation.h"
+#include "cli/scan_watch.h"
+#include "cli/views.h"
+
+namespace gonio::cli {
+namespace {
+
+using api::RouteId;
+
+// Names one submission, so that it can be sent again without being made twice.
+std::string new_key() {
+  std::array<unsigned char, 16> bytes{};
+  (void)getrandom(bytes.data(), bytes.size(), 0);
+  std::string key;
+  constexpr std::string_view kHex = "0123456789abcdef";
+  for (const unsigned char byte : bytes) key += {kHex[byte >> 4U], kHex[byte & 15U]};
+  return key;
+}
+
+// One invocation at work.
+class Runner {
+ public:
+  Runner(const Invocation& wanted, DaemonClient client, World& world)
+      : wanted_(wanted), client_(std::move(client)), world_(world) {}
+
+  Result<int> run() {
+    switch (wanted_.verb) {
+      case Verb::Status:
+        return show(client_.get<api::StatusReport>(RouteId::Status));
+      case Verb::Stop:
+        return show(client_.post<api::StopReport>(RouteId::Stop, 0, "{}"));
+      case Verb::StageShow:
+        return show(client_.get<api::StageReport>(RouteId::Stage));
+      case Verb::StageMove:
+        return command(RouteId::StageMove, api::to_json(wanted_.move));
+      case Verb::StageHome:
+        return command(RouteId::StageHome, "{}");
+      case Verb::StageReset:
+        return command(RouteId::StageReset, "{}");
+      case Verb::PlanCheck:
+        return check_plan();
+      case Verb::ScanRun:
+        return run_scan();
+      case Verb::ScanList:
+        return list_scans();
+      case Verb::ScanShow:
+        return show(client_.get<api::ScanReport>(RouteId::ScanOne, wanted_.scan));
+      case Verb::ScanWatch:
+        return watch(wanted_.scan);
+      case Verb::ScanPause:
+        return command(RouteId::ScanPause, api::to_json(api::PauseRequest{wanted_.now, wanted_.reason}));
+      case Verb::ScanResume:
+        return command(RouteId::ScanResume, "{}");
+      case Verb::ScanFinish:
+        return command(RouteId::ScanFinish, "{}");
+      case Verb::ScanAbort:
+        return command(RouteId::ScanAbort, api::to_json(api::AbortRequest{wanted_.reason}));
+      case Verb::ScanSkip:
+        return command(RouteId::ScanSkip, "{}");
+      case Verb::DataExport:
+        return export_data();
+      case Verb::ReferenceList:
+        return list_references();
+      case Verb::Events:
+        return list_events();
+    }
+    return 0;
+  }
+
+ private:
+  template <class T>
+  Result<int> show(const Result<Told<T>>& told) {
+    if (!told) return failure(told.error());
+    if (wanted_.format == Format::Json || wanted_.format == Format::Jsonl) {
+      world_.out << told->text << '\n';
+    } else if (wanted_.format == Format::Csv) {
+      print_csv(world_.out, view(told->value));
+    } else {
+      print_facts(world_.out, view(told->value));
+    }
+    return 0;
+  }
+
+  template <class List, class Items>
+  Result<int> show_list(const Result<Told<List>>& told, Items items) {
+    if (!told) return failure(told.error());
+    if (wanted_.format == Format::Json) {
+      world_.out << told->text << '\n';
+    } else if (wanted_.format == Format::Jsonl) {
+      for (const auto& item : items(told->value)) world_.out << api::to_json(item) << '\n';
+    } else if (wanted_.format == Format::Csv) {
+      print_csv(world_.out, view(told->value));
+    } else {
+      print_table(world_.out, view(told->value));
+    }
+    return 0;
+  }
+
+  Result<int> list_scans() {
+    return show_list(
+        client_.get<api::ScanList>(RouteId::ScanList),
+        [](const api::ScanList& list) -> const auto& { return list.scans; });
+  }
+
+  Result<int> list_references() {
+    return show_list(
+        client_.get<api::ReferenceList>(RouteId::References),
+        [](const api::ReferenceList& list) -> const auto& { return list.references; });
+  }
+
+  Result<int> command(RouteId route, const std::string& body) {
+    return show(client_.post<api::CommandReport>(route, wanted_.scan, body));
+  }
+
+  Result<std::string> submission() {
+    Result<std::string> plan = read_text(wanted_.file);
+    if (!plan) return failure(plan.error());
+    return api::to_json(api::PlanSubmission{.plan = std::move(*plan), .plan_file = wanted_.file, .parts = {}});
+  }
+
+  Result<int> check_plan() {
+    const Result<std::string> body = submission();
+    if (!body) return failure(body.error());
+    return show(client_.post<api::PlanReport>(RouteId::PlanCheck, 0, *body));
+  }
+
+  Result<int> run_scan() {
+    const Result<std::string> body = submission();
+    if (!body) return failure(body.error());
+    const std::string key = wanted_.key.empty() ? new_key() : wanted_.key;
+    const auto submitted = client_.post<api::CommandReport>(RouteId::ScanSubmit, 0, *body, {{"Idempotency-Key", key}});
+    if (!submitted || !wanted_.watch) return show(submitted);
+    return watch(submitted->value.scan);
+  }
+
+  Result<int> watch(std::int64_t scan) {
+    const Result<api::ScanReport> ended = watch_scan(client_, scan, world_);
+    if (!ended && world_.interrupted) {
+      world_.err << "gonioctl: interrupted; scan " << scan << " goes on. See it again with: gonioctl scan watch "
+                 << scan << '\n';
+      return kInterruptedExit;
+    }
+    if (!ended) return failure(ended.error());
+    print_facts(world_.out, view(*ended));
+    return ended->state == "done" || ended->state == "finished-early" ? 0 : 1;
+  }
+
+  Result<int> export_data() {
+    const Result<std::string> csv = client_.text(RouteId::ScanExport, wanted_.scan, "format=csv");
+    if (!csv) return failure(csv.error());
+    if (wanted_.file == "-") {
+      world_.out << *csv;
+      return 0;
+    }
+    GONIO_TRY(write_text(wanted_.file, *csv));
+    world_.err << "scan " << wanted_.scan << " written to " << wanted_.file << '\n';
+    return 0;
+  }
+
+  Result<int> list_events() {
+    std::int64_t last = 0;
+    if (!wanted_.follow) {
+      const auto status = client_.get<api::StatusReport>(RouteId::Status);
+      if (!status) return failure(status.error());
+      last = status->value.last_event;
+      if (wanted_.after >= last) return 0;
+    }
+    const Result<void> listened = client_.events(wanted_.after, [&](const api::Event& event) {
+      print_event(event);
+      return wanted_.follow || event.number < last;
+    });
+    if (listened) return 0;
+    return failure(listened.error());
+  }
+
+  void print_event(const api::Event& event) {
+    if (wanted_.format == Format::Json || wanted_.format == Format::Jsonl) {
+      world_.out << api::to_json(event) << std::endl;
+      return;
+    }
+    Table table = view(event);
+    if (wanted_.format == Format::Csv) {
+      if (!first_event_) table.header.clear();
+      first_event_ = false;
+      print_csv(world_.out, table);
+    } else {
+      const std::vector<std::string>& cells = table.rows[0];
+      for (std::size_t i = 0; i < cells.size(); ++i) world_.out << (i == 0 ? "" : "  ") << cells[i];
+      world_.out << '\n';
+    }
+    world_.out << std::flush;
+  }
+
+  const Invocation& wanted_;
+  DaemonClient client_;
+  World& world_;
+  bool first_event_ = true;
+};
+
+int show_error(const Error& error, World& world) {
+  if (world.interrupted) {
+    world.err << "gonioctl: interrupted\n";
+    return kInterruptedExit;
+  }
+  world.err << "gonioctl: " << explain(error) << '\n';
+  return traits(error.code).exit_code;
+}
+
+}  // namespace
+
+int run(const std::vector<std::string>& arguments, World& world) {
+  const auto wanted = read_command_line(arguments, world.default_connect);
+  if (!wanted) {
+    (wanted.error().exit_code == 0 ? world.out : world.err) << wanted.error().text;
+    return wanted.error().exit_code;
+  }
+  Result<HttpClient> http = HttpClient::open(wanted->connect, world.interrupted);
+  if (!http) return show_error(http.error(), world);
+  const Result<int> done = Runner(*wanted, DaemonClient(std::move(*http), wanted->connect), world).run();
+  return done ? *done : show_error(done.error(), world);
+}
+
+}  // namespace gonio::cli

@@ -1,0 +1,198 @@
+#include "cli/views.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace gonio::cli {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+std::string yes_no(bool value) {
+  return value ? "yes" : "no";
+}
+
+// A row in the making, each cell with its name.
+class Facts {
+ public:
+  Facts& add(std::string name, std::string value) {
+    table_.header.push_back(std::move(name));
+    table_.rows[0].push_back(std::move(value));
+    return *this;
+  }
+  [[nodiscard]] Table take() { return std::move(table_); }
+
+ private:
+  Table table_{.header = {}, .rows = {{}}};
+};
+
+std::string split_text(const api::TimeSplit& split) {
+  return fmt::format("{:.3f} s (move {:.3f}, settle {:.3f}, expose {:.3f}, read {:.3f}, idle {:.3f})", split.total_s(),
+                     split.move_s, split.settle_s, split.expose_s, split.read_s, split.idle_s);
+}
+
+std::string error_text(const std::optional<Error>& error) {
+  return error ? describe(*error) : std::string();
+}
+
+std::string percent_text(const std::optional<double>& fraction) {
+  return fraction ? fmt::format("{:.3g} %", kPercent * *fraction) : std::string();
+}
+
+double share(const api::ScanReport& scan) {
+  if (scan.items == 0) return 0.0;
+  return kPercent * static_cast<double>(scan.accepted + scan.skipped) / static_cast<double>(scan.items);
+}
+
+std::string stage_words(const api::StageReport& stage) {
+  std::string words = stage.homed ? "homed" : "not homed";
+  if (stage.moving) words += ", moving";
+  if (stage.halted) words += ", STOPPED (clear with: gonioctl stage reset)";
+  if (stage.heartbeat_tripped) words += ", heartbeat missed";
+  if (stage.interlock_open) words += ", interlock open";
+  if (stage.fault != 0) words += fmt::format(", fault {}", stage.fault);
+  return words;
+}
+
+}  // namespace
+
+std::string holds_text(const api::ScanReport& scan) {
+  std::string text;
+  for (const api::HoldReport& hold : scan.holds) {
+    text += fmt::format("{}{} ({}: {})", text.empty() ? "" : ", ", hold.name, hold.owner, hold.reason);
+  }
+  return text;
+}
+
+std::string progress_text(const api::ScanReport& scan) {
+  std::string text = fmt::format("scan {} {}: {} of {} items, {:.1f} %, {}", scan.id, scan.name,
+                                 scan.accepted + scan.skipped, scan.items, share(scan), scan.state);
+  if (scan.remaining_s) {
+    text += fmt::format(", {} to go", duration_text(*scan.remaining_s));
+    if (scan.u_remaining_s) text += fmt::format(" (+- {})", duration_text(*scan.u_remaining_s));
+  }
+  const std::string holds = holds_text(scan);
+  if (!holds.empty()) text += ": " + holds;
+  return text;
+}
+
+Table view(const api::StatusReport& status) {
+  Facts facts;
+  facts.add("daemon", "goniod " + status.version)
+      .add("instrument", status.instrument)
+      .add("instrument_sha256", status.instrument_sha256)
+      .add("uptime", duration_text(status.uptime_s))
+      .add("doing", status.doing)
+      .add("scan", status.active ? progress_text(*status.active) : "none")
+      .add("queued", std::to_string(status.queued.size()))
+      .add("stage", status.stage ? stage_words(*status.stage) : "not seen yet")
+      .add("stage_error", error_text(status.stage_error))
+      .add("detector_error", error_text(status.detector_error))
+      .add("store_error", error_text(status.store_error))
+      .add("last_event", std::to_string(status.last_event));
+  return facts.take();
+}
+
+Table view(const api::StageReport& stage) {
+  Facts facts;
+  facts.add("stage", stage_words(stage)).add("age_s", number_text(stage.age_s, 3));
+  for (const api::AxisReport& axis : stage.axes)
+    facts.add(axis.name + "_" + axis.unit, fmt::format("{:.4f}", axis.position));
+  facts.add("source_shutter", stage.source_shutter)
+      .add("detector_shutter", stage.detector_shutter)
+      .add("monitor", number_text(stage.monitor))
+      .add("lamp_temperature_c", number_text(stage.lamp_temperature_c, 4))
+      .add("detector_temperature_c", number_text(stage.detector_temperature_c, 4))
+      .add("room_temperature_c", number_text(stage.room_temperature_c, 4))
+      .add("humidity_percent", number_text(stage.humidity_percent, 4))
+      .add("epoch", std::to_string(stage.epoch));
+  return facts.take();
+}
+
+Table view(const api::PlanReport& plan) {
+  Facts facts;
+  facts.add("plan", plan.name)
+      .add("sample", plan.sample)
+      .add("reference", plan.reference)
+      .add("asked", std::to_string(plan.asked))
+      .add("points", std::to_string(plan.points))
+      .add("merged", std::to_string(plan.merged))
+      .add("blocked", std::to_string(plan.blocked))
+      .add("items", std::to_string(plan.items))
+      .add("estimate", duration_text(plan.estimate_s))
+      .add("of_which", split_text(plan.estimate));
+  return facts.take();
+}
+
+Table view(const api::ScanReport& scan) {
+  Facts facts;
+  facts.add("scan", std::to_string(scan.id))
+      .add("name", scan.name)
+      .add("sample", scan.sample)
+      .add("reference", scan.reference)
+      .add("state", scan.state)
+      .add("outcome", scan.outcome)
+      .add("holds", holds_text(scan))
+      .add("doing", scan.doing)
+      .add("who", scan.who)
+      .add("submitted_utc", scan.submitted_utc)
+      .add("changed_utc", scan.changed_utc)
+      .add("points", std::to_string(scan.points))
+      .add("merged", std::to_string(scan.merged))
+      .add("blocked", std::to_string(scan.blocked))
+      .add("items", std::to_string(scan.items))
+      .add("accepted", std::to_string(scan.accepted))
+      .add("skipped", std::to_string(scan.skipped))
+      .add("attempts", std::to_string(scan.attempts))
+      .add("visits", std::to_string(scan.visits))
+      .add("a_point", split_text(scan.seconds_a_point))
+      .add("to_go", scan.remaining_s ? duration_text(*scan.remaining_s) : "")
+      .add("brdf_values", scan.brdf_values ? std::to_string(*scan.brdf_values) : "")
+      .add("median_U", percent_text(scan.median_relative_u))
+      .add("worst_U", percent_text(scan.worst_relative_u))
+      .add("instrument_sha256", scan.instrument_sha256);
+  return facts.take();
+}
+
+Table view(const api::ScanList& scans) {
+  Table table{.header = {"scan", "state", "done_percent", "accepted", "items", "sample", "submitted_utc", "name"},
+              .rows = {}};
+  for (const api::ScanReport& scan : scans.scans) {
+    table.rows.push_back({std::to_string(scan.id), scan.state, fmt::format("{:.1f}", share(scan)),
+                          std::to_string(scan.accepted), std::to_string(scan.items), scan.sample, scan.submitted_utc,
+                          scan.name});
+  }
+  return table;
+}
+
+Table view(const api::ReferenceList& references) {
+  Table table{.header = {"serial", "material", "certificate", "expires", "file", "error"}, .rows = {}};
+  for (const api::ReferenceReport& reference : references.references) {
+    table.rows.push_back({reference.serial, reference.material, reference.certificate_date, reference.expires,
+                          reference.file, error_text(reference.error)});
+  }
+  return table;
+}
+
+Table view(const api::CommandReport& command) {
+  Facts facts;
+  if (command.scan != 0) facts.add("scan", std::to_string(command.scan));
+  facts.add("done", yes_no(true));
+  if (command.existed) facts.add("existed", yes_no(true));
+  return facts.take();
+}
+
+Table view(const api::StopReport& stop) {
+  Facts facts;
+  facts.add("stopped", "nothing moves until: gonioctl stage reset").add("epoch", std::to_string(stop.epoch));
+  return facts.take();
+}
+
+Table view(const api::Event& event) {
+  return {.header = {"number", "utc", "kind", "scan", "who", "data"},
+          .rows = {{std::to_string(event.number), event.utc, event.kind, std::to_string(event.scan), event.who,
+                    event.data}}};
+}
+
+}  // namespace gonio::cli

@@ -1,0 +1,192 @@
+// gonioctl whole, against the real server with a service that remembers what it was asked.
+#include "cli/run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+#include <thread>
+
+#include "daemon/http/server.h"
+#include "tests/daemon/http/fake_service.h"
+#include "tests/support/process.h"
+
+namespace gonio::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class Gonioctl : public testing::Test {
+ protected:
+  void SetUp() override {
+    Result<std::unique_ptr<daemon::Server>> started =
+        daemon::Server::start({.port = 0, .socket_file = folder_ / "s"}, service_, clock_);
+    ASSERT_TRUE(started.has_value()) << describe(started.error());
+    server_ = std::move(*started);
+    connect_ = "http://127.0.0.1:" + std::to_string(server_->port());
+  }
+  int run(const std::vector<std::string>& arguments) {
+    out_.str("");
+    err_.str("");
+    World world{.out = out_, .err = err_, .interrupted = interrupted_, .default_connect = connect_};
+    return cli::run(arguments, world);
+  }
+  std::string plan_file(const std::string& text) {
+    const std::string path = folder_ / "plan.toml";
+    test::write_text(path, text);
+    return path;
+  }
+
+  const test::TemporaryFolder folder_;
+  SystemClock clock_;
+  test::FakeService service_;
+  std::unique_ptr<daemon::Server> server_;
+  std::string connect_;
+  std::atomic<bool> interrupted_{false};
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(Gonioctl, ShowsTheStatus) {
+  EXPECT_EQ(run({"status"}), 0);
+
+  EXPECT_THAT(out_.str(), HasSubstr("bench A"));
+  EXPECT_THAT(out_.str(), HasSubstr("homed"));
+  EXPECT_THAT(err_.str(), IsEmpty());
+}
+
+TEST_F(Gonioctl, StopsInOneRequest) {
+  EXPECT_EQ(run({"stop"}), 0);
+
+  EXPECT_THAT(service_.asked(), ElementsAre("stop local"));
+  EXPECT_THAT(out_.str(), HasSubstr("gonioctl stage reset"));
+}
+
+TEST_F(Gonioctl, SpeaksOverTheUnixSocket) {
+  connect_ = "unix:" + (folder_ / "s");
+
+  EXPECT_EQ(run({"status"}), 0);
+}
+
+TEST_F(Gonioctl, WithoutADaemonEndsWithThree) {
+  EXPECT_EQ(run({"status", "--connect", "http://127.0.0.1:" + std::to_string(test::free_port())}), 3);
+
+  EXPECT_THAT(err_.str(), HasSubstr("no-daemon"));
+  EXPECT_THAT(err_.str(), HasSubstr("Start goniod"));
+}
+
+TEST_F(Gonioctl, AnAddressThatIsNoneIsAUsageError) {
+  EXPECT_EQ(run({"status", "--connect", "somewhere"}), 2);
+}
+
+TEST_F(Gonioctl, ErrorsOfTheDaemonKeepTheirCodeAndSayWhatToDo) {
+  EXPECT_EQ(run({"scan", "show", "9"}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("no scan 9"));
+  EXPECT_THAT(err_.str(), HasSubstr("What to do:"));
+  EXPECT_THAT(out_.str(), IsEmpty());
+}
+
+TEST_F(Gonioctl, AWrongPlanShowsFileLineAndField) {
+  const std::string path = plan_file("theta_i_degg = 3");
+
+  EXPECT_EQ(run({"plan", "check", path}), 2);
+
+  EXPECT_THAT(err_.str(), HasSubstr(path + ":5: geometry.theta_i_degg"));
+  EXPECT_THAT(err_.str(), HasSubstr("did you mean"));
+}
+
+TEST_F(Gonioctl, APlanThatCannotBeReadIsNamedAndNothingIsSent) {
+  EXPECT_EQ(run({"scan", "run", folder_ / "none.toml"}), 2);
+
+  EXPECT_THAT(err_.str(), HasSubstr("none.toml"));
+  EXPECT_THAT(service_.asked(), IsEmpty());
+}
+
+TEST_F(Gonioctl, SendsThePlanVerbatimWithItsNameAndKey) {
+  const std::string path = plan_file("[scan]\n");
+
+  EXPECT_EQ(run({"scan", "run", path, "--key", "k7"}), 0);
+
+  EXPECT_THAT(service_.asked(), ElementsAre("submit " + path + " [[scan]\n] key=k7 local"));
+  EXPECT_THAT(out_.str(), HasSubstr("scan  3"));
+}
+
+TEST_F(Gonioctl, JsonIsTheDaemonsOwn) {
+  EXPECT_EQ(run({"plan", "check", plan_file("x"), "-o", "json"}), 0);
+
+  EXPECT_THAT(out_.str(), HasSubstr("\"blocked\":3"));
+}
+
+TEST_F(Gonioctl, ListsComeAsTableCsvAndLines) {
+  EXPECT_EQ(run({"scan", "list"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("wheat-07"));
+  EXPECT_EQ(run({"scan", "list", "-o", "csv"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("3,running,50.0,621,1242,wheat-07"));
+  EXPECT_EQ(run({"scan", "list", "-o", "jsonl"}), 0);
+  EXPECT_THAT(out_.str(), testing::StartsWith("{"));
+}
+
+TEST_F(Gonioctl, ScanVerbsReachTheirScan) {
+  EXPECT_EQ(run({"scan", "pause", "3", "--now", "--reason", "lunch"}), 0);
+  EXPECT_EQ(run({"scan", "resume", "3"}), 0);
+  EXPECT_EQ(run({"scan", "abort", "3"}), 0);
+
+  EXPECT_THAT(service_.asked(),
+              ElementsAre("change 3 verb 1 lunch local", "change 3 verb 2  local", "change 3 verb 4  local"));
+}
+
+TEST_F(Gonioctl, AnExportIsThereWholeAndNothingBesideIt) {
+  EXPECT_EQ(run({"data", "export", "3", "-o", folder_ / "out.csv"}), 0);
+
+  EXPECT_EQ(test::text_of(folder_ / "out.csv"), "# scan: 3\npoint,theta_i_deg\n0,30\n");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("part")));
+  }
+  EXPECT_EQ(run({"data", "export", "3", "-o", folder_ / "no/such/folder.csv"}), 2);
+}
+
+TEST_F(Gonioctl, WatchingShowsProgressAndEndsWithTheScan) {
+  service_.scan_state = "done";
+
+  EXPECT_EQ(run({"scan", "run", plan_file("x"), "--watch"}), 0);
+
+  EXPECT_THAT(out_.str(), HasSubstr("scan 3 wheat: 621 of 1242 items, 50.0 %, done"));
+}
+
+TEST_F(Gonioctl, AScanThatFailedEndsTheWatchWithOne) {
+  service_.scan_state = "failed";
+
+  EXPECT_EQ(run({"scan", "watch", "3"}), 1);
+}
+
+TEST_F(Gonioctl, InterruptingAWatchSaysThatTheScanGoesOn) {
+  int code = 0;
+  std::thread watching([&] { code = run({"scan", "watch", "3"}); });
+
+  interrupted_ = true;
+  watching.join();
+
+  EXPECT_EQ(code, kInterruptedExit);
+  EXPECT_THAT(err_.str(), HasSubstr("interrupted"));
+}
+
+TEST_F(Gonioctl, ListsTheEventsThereAreAndEnds) {
+  for (const std::string kind : {"scan-submitted", "item-accepted", "item-accepted"}) {
+    server_->publish(service_.commit(kind));
+  }
+
+  EXPECT_EQ(run({"events", "--after", "1"}), 0);
+
+  EXPECT_EQ(out_.str(), "2    item-accepted  3  local  {}\n3    item-accepted  3  local  {}\n");
+  EXPECT_EQ(run({"events", "-o", "jsonl"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("\"kind\":\"scan-submitted\""));
+  EXPECT_EQ(run({"events", "--after", "3"}), 0);
+  EXPECT_THAT(out_.str(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace gonio::cli
