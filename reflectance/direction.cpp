@@ -40,6 +40,11 @@ bool is_quarter_turn(Angle a) {
   return a.si() >= 0.0 && a.si() <= kHalfPi;
 }  // false for NaN
 
+Direction direction_of_arm(Angle theta, Angle phi) {
+  if (theta.si() >= 0.0) return Direction::from_angles(theta, phi);
+  return Direction::from_angles(-theta, phi + radians(std::numbers::pi));
+}
+
 Error bad_angle(std::string_view name, Angle a, std::string_view limit) {
   return {.code = ErrorCode::InvalidInput,
           .tried = "make a direction",
@@ -111,11 +116,11 @@ Vector Direction::vector() const {
 }
 
 Direction incident_direction(const Geometry& g) {
-  return Direction::from_angles(g.theta_i, g.phi_i);
+  return direction_of_arm(g.theta_i, g.phi_i);
 }
 
 Direction reflected_direction(const Geometry& g) {
-  return Direction::from_angles(g.theta_r, g.phi_r);
+  return direction_of_arm(g.theta_r, g.phi_r);
 }
 
 Geometry geometry_of(const Direction& i, const Direction& r) {

@@ -66,7 +66,8 @@ class Direction {
   Angle phi_{};
 };
 
-/// The two directions of a reading. Thetas must lie in [0, 90 deg] (asserted).
+/// The two directions of a reading. An arm that swings through the normal reads a negative theta there: it is taken for
+/// what it points at, (-theta, phi + 180 deg). Thetas in [-90, 90 deg] (asserted).
 [[nodiscard]] Direction incident_direction(const Geometry& g);
 [[nodiscard]] Direction reflected_direction(const Geometry& g);
 [[nodiscard]] Geometry geometry_of(const Direction& i, const Direction& r);

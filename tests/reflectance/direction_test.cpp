@@ -90,6 +90,14 @@ TEST(Direction, AgreesWithThePhaseAngleOfTheGeometry) {
   EXPECT_NEAR(phase_angle(i, r).si(), phase_angle(g).si(), 4e-16);
 }
 
+TEST(Direction, TakesAnArmBeyondTheNormalForWhatItPointsAt) {
+  const Geometry beyond{.theta_i = -0.01_deg, .phi_i = 0.0_deg, .theta_r = -30.0_deg, .phi_r = 90.0_deg};
+
+  EXPECT_EQ(incident_direction(beyond), Direction::from_angles(0.01_deg, 180.0_deg));
+  EXPECT_EQ(reflected_direction(beyond).theta(), 30.0_deg);
+  EXPECT_NEAR(in_degrees(reflected_direction(beyond).phi()), -90.0, 1e-13);
+}
+
 TEST(Direction, RefusesWhatIsNotInTheUpperHemisphere) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
