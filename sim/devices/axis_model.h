@@ -32,6 +32,7 @@ class AxisModel {
 
   [[nodiscard]] double position(Instant t) const { return path_.position(t); }
   [[nodiscard]] std::int32_t counts(Instant t) const;
+  [[nodiscard]] double destination() const { return path_.destination(); }
   [[nodiscard]] double target_of_counts(std::int64_t counts) const {
     return origin_ + static_cast<double>(counts) * scale_;
   }

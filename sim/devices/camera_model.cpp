@@ -49,8 +49,7 @@ std::optional<Exposure> CameraModel::collect_exposure(Instant now) {
   return exposure;
 }
 
-CameraFrame CameraModel::render(const Exposure& exposure, std::uint64_t frame_id) const {
-  const Scene& scene = instrument_.scene();
+CameraFrame make_frame(const Scene& scene, const Exposure& exposure, std::uint64_t frame_id) {
   return {.width = scene.detector.width_px,
           .height = scene.detector.height_px,
           .pixels = render_frame(scene.detector, exposure, scene.seed),
@@ -63,7 +62,7 @@ CameraFrame CameraModel::render(const Exposure& exposure, std::uint64_t frame_id
 std::optional<CameraFrame> CameraModel::collect(Instant now) {
   const auto exposure = collect_exposure(now);
   if (!exposure) return std::nullopt;
-  return render(*exposure, frames_);
+  return make_frame(instrument_.scene(), *exposure, frames_);
 }
 
 }  // namespace gonio::sim

@@ -21,6 +21,9 @@ struct CameraFrame {
   double gain_db = 0.0;
 };
 
+/// The frame of a finished exposure. Pure: threads any.
+[[nodiscard]] CameraFrame make_frame(const Scene& scene, const Exposure& exposure, std::uint64_t frame_id);
+
 /// The camera without its wire: settings, software trigger, one exposure at a time, no frame kept beyond the last. Wall
 /// time. Threads: one at a time, as the instrument.
 class CameraModel {
@@ -43,9 +46,8 @@ class CameraModel {
   bool trigger(Instant now);
   /// When the exposure under way ends.
   [[nodiscard]] std::optional<Instant> ready_at() const { return instrument_.exposure_end(); }
-  /// The finished exposure with its frame id, once; its frame is `render` or its statistics `draw_region`.
+  /// The finished exposure with its frame id, once; its frame is `make_frame`, its statistics `draw_region`.
   [[nodiscard]] std::optional<Exposure> collect_exposure(Instant now);
-  [[nodiscard]] CameraFrame render(const Exposure& exposure, std::uint64_t frame_id) const;
   /// Both in one step.
   [[nodiscard]] std::optional<CameraFrame> collect(Instant now);
   [[nodiscard]] std::uint64_t frames() const { return frames_; }

@@ -60,6 +60,11 @@ void Instrument::advance_to(Instant now) {
   integrate_to(now_);
 }
 
+void Instrument::power_cycle_stage(Instant now) {
+  advance_to(now);
+  stage_ = StageModel(scene_.stage, scene_.time_scale, stage_.memory(now_), now_);
+}
+
 bool Instrument::start_exposure(Duration duration, double gain_db, Instant now) {
   assert(duration > Duration::zero());
   advance_to(now);

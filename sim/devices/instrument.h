@@ -51,6 +51,9 @@ class Instrument {
   [[nodiscard]] StageModel& stage() { return stage_; }
   [[nodiscard]] const StageModel& stage() const { return stage_; }
 
+  /// The stage loses its power and gets it back: home, epoch, latches and counters are gone, the boot counter grows.
+  void power_cycle_stage(Instant now);
+
   /// Begins an exposure of `duration` > 0 of wall time; false: one is under way.
   bool start_exposure(Duration duration, double gain_db, Instant now);
   [[nodiscard]] std::optional<Instant> exposure_end() const;

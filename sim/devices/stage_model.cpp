@@ -110,6 +110,7 @@ void StageModel::command_motion(const MotionCommand& command, Instant now) {
   }
   answer_.accepted_token = command.token;
   ++moves_;
+  ++motion_commands_;
   for (const Axis a : stage::kAllAxes) {
     AxisModel& axis = axes_[stage::index_of(a)];
     if (command.command == stage::kCommandHome)
@@ -140,6 +141,7 @@ bool StageModel::reset(std::uint32_t epoch, Instant now) {
 }
 
 void StageModel::set_shutters(bool source_open, bool detector_open, Instant now) {
+  ++shutter_commands_;
   set_shutter(source_shutter_, source_open, shutter_time_, now);
   set_shutter(detector_shutter_, detector_open, shutter_time_, now);
 }

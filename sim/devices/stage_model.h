@@ -98,6 +98,11 @@ class StageModel {
   [[nodiscard]] const GateLatch& gate() const { return gate_; }
   /// The number of the last move of any axis.
   [[nodiscard]] std::uint64_t moves() const { return moves_; }
+  /// Accepted since power-up: what has made something move.
+  [[nodiscard]] std::uint32_t motion_commands() const { return motion_commands_; }
+  [[nodiscard]] std::uint32_t shutter_commands() const { return shutter_commands_; }
+  [[nodiscard]] bool is_halted() const { return is_halted_; }
+  [[nodiscard]] bool is_tripped() const { return is_tripped_; }
   [[nodiscard]] StageMemory memory(Instant now) const;
 
  private:
@@ -122,6 +127,8 @@ class StageModel {
   Instant last_beat_;
   ShutterModel source_shutter_;
   ShutterModel detector_shutter_;
+  std::uint32_t motion_commands_ = 0;
+  std::uint32_t shutter_commands_ = 0;
   GateLatch gate_;
   stage::PerAxis<std::int32_t> pending_open_{};  ///< of the exposure under way; shown when it has closed
 };

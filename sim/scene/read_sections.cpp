@@ -45,6 +45,8 @@ void read_detector(TomlReader t, DetectorSpec& detector) {
   detector.longest_exposure_s = t.number_or("longest_exposure_s", detector.longest_exposure_s,
                                             {.least = detector.shortest_exposure_s, .unit = "s"});
   detector.frames_at_most = static_cast<int>(t.integer_or("frames_at_most", detector.frames_at_most, 1, 10000));
+  detector.control_heartbeat_wall_s = t.number_or("control_heartbeat_wall_s", detector.control_heartbeat_wall_s,
+                                                  {.least = 0.5, .most = 60.0, .unit = "s"});
 }
 
 void read_axis(TomlReader t, Axis axis, AxisSpec& spec) {

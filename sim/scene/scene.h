@@ -54,6 +54,7 @@ struct DetectorSpec {
   double shortest_exposure_s = 0.001;
   double longest_exposure_s = 0.512;
   int frames_at_most = 64;
+  double control_heartbeat_wall_s = 3.0;  ///< a silent controller of the camera is released after so long; wall time
 };
 inline constexpr double kFullScaleDn = 4095.0;  ///< 12 bits
 

@@ -1,0 +1,84 @@
+#include "sim/goniosim/simulator.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <functional>
+
+namespace gonio::sim {
+namespace {
+
+// An address for the camera of this folder: the same each time, and another one for another folder.
+std::string camera_candidate(const std::string& folder, unsigned attempt) {
+  const std::uint64_t hash = std::hash<std::string>{}(folder) + std::uint64_t{attempt} * 0x9E3779B97F4A7C15ULL;
+  constexpr std::uint64_t kHosts = 253;
+  return fmt::format("127.{}.{}.{}", 1 + (hash >> 40U) % kHosts, 1 + (hash >> 24U) % kHosts, 1 + (hash >> 8U) % kHosts);
+}
+
+}  // namespace
+
+Simulator::Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, const Clock& clock)
+    : folder_(std::move(folder)), instrument_(std::move(scene), std::move(memory), clock) {}
+
+Result<std::unique_ptr<Simulator>> Simulator::start(Scene scene, const std::string& state_folder,
+                                                    const WireWishes& wishes, const Clock& clock) {
+  auto folder = StateFolder::open(state_folder);
+  if (!folder) return failure(std::move(folder).error());
+  folder->remove_ready();
+  auto last = folder->load();
+  if (!last) return failure(std::move(last).error());
+  std::unique_ptr<Simulator> simulator(new Simulator(std::move(scene), *std::move(folder), last->instrument, clock));
+  GONIO_TRY(simulator->bind(*last, wishes));
+  GONIO_TRY(simulator->folder_.write_papers(simulator->instrument_.scene(), simulator->addresses_));
+  GONIO_TRY(simulator->save());
+  GONIO_TRY(simulator->folder_.write_ready(simulator->addresses_));
+  return simulator;
+}
+
+Simulator::~Simulator() {
+  if (!control_) return;  // it never came up
+  folder_.remove_ready();
+  (void)save();  // on the way out there is nobody left to tell
+}
+
+Result<void> Simulator::bind(const SimulatorState& last, const WireWishes& wishes) {
+  const std::uint16_t port = wishes.stage_port != 0 ? wishes.stage_port : last.stage_port;
+  auto stage = ModbusServer::start(instrument_, addresses_.stage_host, port);
+  if (!stage) return failure(std::move(stage).error());
+  stage_ = *std::move(stage);
+  addresses_.stage_port = stage_->port();
+  GONIO_TRY(bind_camera(wishes.camera_address.empty() ? last.camera_address : wishes.camera_address));
+  auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_, *camera_);
+  if (!control) return failure(std::move(control).error());
+  control_ = *std::move(control);
+  return {};
+}
+
+Result<void> Simulator::bind_camera(const std::string& wished) {
+  constexpr unsigned kAttempts = 32;
+  for (unsigned attempt = 0;; ++attempt) {
+    addresses_.camera_address = wished.empty() ? camera_candidate(folder_.path(), attempt) : wished;
+    auto camera = GigeCameraServer::start(instrument_, addresses_.camera_address);
+    if (camera) {
+      camera_ = *std::move(camera);
+      return {};
+    }
+    const bool may_try_another =
+        wished.empty() && attempt + 1 < kAttempts && camera.error().code == ErrorCode::PortBusy;
+    if (!may_try_another) return failure(std::move(camera).error());
+  }
+}
+
+Result<void> Simulator::save() {
+  const InstrumentMemory memory =
+      instrument_.with([](LiveInstrument::Parts& parts) { return parts.instrument.memory(parts.now); });
+  if (has_saved_ && memory.exposures == saved_exposures_ && memory.stage.moves == saved_moves_) return {};
+  GONIO_TRY(folder_.save(
+      {.instrument = memory, .stage_port = addresses_.stage_port, .camera_address = addresses_.camera_address}));
+  has_saved_ = true;
+  saved_exposures_ = memory.exposures;
+  saved_moves_ = memory.stage.moves;
+  return {};
+}
+
+}  // namespace gonio::sim

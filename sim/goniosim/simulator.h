@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "sim/goniosim/control_server.h"
+#include "sim/goniosim/state_folder.h"
+#include "sim/wires/gige_camera_server.h"
+#include "sim/wires/live_instrument.h"
+#include "sim/wires/modbus_server.h"
+
+namespace gonio::sim {
+
+/// Which addresses are asked for; what is left open is the last run's, or free.
+struct WireWishes {
+  std::uint16_t stage_port = 0;
+  std::string camera_address;
+};
+
+/// A whole simulated instrument on its wires, living in a state folder: what goniosim is around its command line.
+/// Threads: owned by one; the wires have their own.
+class Simulator {
+ public:
+  /// Powers up: boot counter + 1, wires, papers, control socket, ready file. `clock` must outlive it.
+  /// Errors: Busy (the folder), PortBusy, InvalidInput, FileUnreadable, DiskFull.
+  [[nodiscard]] static Result<std::unique_ptr<Simulator>> start(Scene scene, const std::string& state_folder,
+                                                                const WireWishes& wishes, const Clock& clock);
+  ~Simulator();
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
+  [[nodiscard]] const WireAddresses& addresses() const { return addresses_; }
+  [[nodiscard]] const StateFolder& folder() const { return folder_; }
+  [[nodiscard]] LiveInstrument& instrument() { return instrument_; }
+  /// Writes the state if anything has happened since the last time. Errors: DiskFull.
+  [[nodiscard]] Result<void> save();
+
+ private:
+  Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, const Clock& clock);
+  [[nodiscard]] Result<void> bind(const SimulatorState& last, const WireWishes& wishes);
+  [[nodiscard]] Result<void> bind_camera(const std::string& wished);
+
+  StateFolder folder_;
+  LiveInstrument instrument_;
+  WireAddresses addresses_;
+  std::uint64_t saved_exposures_ = 0;
+  std::uint64_t saved_moves_ = 0;
+  bool has_saved_ = false;
+  std::unique_ptr<ModbusServer> stage_;
+  std::unique_ptr<GigeCameraServer> camera_;
+  std::unique_ptr<ControlServer> control_;
+};
+
+}  // namespace gonio::sim

@@ -1,0 +1,103 @@
+// The daemon's description of the instrument, section by section.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sim/devices/detector_noise.h"
+#include "sim/scene/papers.h"
+
+namespace gonio::sim {
+
+using stage::Axis;
+
+namespace {
+
+double wall_s(const Scene& scene, double scene_s) {
+  return scene_s / scene.time_scale;
+}
+
+std::string axis_section(const Scene& scene, Axis axis) {
+  const AxisSpec& spec = scene.stage.axes[stage::index_of(axis)];
+  const std::string_view unit = stage::axis_unit(axis);
+  const double k = scene.time_scale;
+  return fmt::format(
+      "\n[stage.axes.{0}]\noffset_{1} = 0.0\nlow_{1} = {2}\nhigh_{1} = {3}\nspeed_{1}_per_s = {4}\n"
+      "acceleration_{1}_per_s2 = {5}\nsettle_s = {6}\nwindow_{1} = {7}\n",
+      stage::axis_name(axis), unit, spec.low, spec.high, spec.speed * k, spec.acceleration * k * k,
+      wall_s(scene, spec.settle_s), spec.window);
+}
+
+// The longest way of any axis at homing's half speed, twice over, and time for a machine that is busy with other
+// things.
+double homing_time_s(const Scene& scene) {
+  constexpr double kPatience = 5.0;
+  double longest = 0.0;
+  for (const AxisSpec& spec : scene.stage.axes) {
+    longest = std::max(longest, 2.0 * (spec.high - spec.low) / spec.speed + spec.speed / spec.acceleration);
+  }
+  return 2.0 * wall_s(scene, longest) + kPatience;
+}
+
+std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
+  constexpr double kPatience = 2.0;
+  std::string text = fmt::format(
+      "\n[stage]\nlink = \"tcp\"\naddress = \"{}\"\nport = {}\nreply_timeout_s = 1.0\nhoming_time_s = {:.3f}\n"
+      "shutter_time_s = {:.3f}\nheartbeat_timeout_s = {}\ndeadline_factor = 1.5\ndeadline_margin_s = {}\n",
+      addresses.stage_host, addresses.stage_port, homing_time_s(scene),
+      2.0 * wall_s(scene, scene.stage.shutter_s) + kPatience, scene.stage.heartbeat_timeout_wall_s, kPatience);
+  for (const Axis axis : stage::kAllAxes) text += axis_section(scene, axis);
+  text += fmt::format("\n[stage.carriage]\nsample_mm = {}\nreference_mm = {}\ntrap_mm = {}\n", scene.stage.sample_mm,
+                      scene.stage.reference_mm, scene.stage.trap_mm);
+  for (const FilterSpec& filter : scene.filters) {
+    text += fmt::format(
+        "\n[[stage.filters]]\nslot = {}\ncentroid_nm = {:.10g}\nfwhm_nm = {:.10g}\nout_of_band_fraction = {}\nside = "
+        "\"detector\"\n",
+        filter.slot, in_nanometres(filter.centroid), in_nanometres(filter.fwhm), filter.out_of_band_fraction);
+  }
+  text +=
+      "\n[stage.shadow]\ndetector_head_radius_mm = 20.0\nsource_head_radius_mm = 20.0\ndetector_arm_mm = 500.0\n"
+      "source_arm_mm = 600.0\n\n";
+  return text + stage::to_toml(scene.stage.registers, "stage.registers");
+}
+
+std::string detector_section(const Scene& scene, const WireAddresses& addresses) {
+  const DetectorSpec& spec = scene.detector;
+  const Aperture aperture = aperture_of(spec);
+  constexpr double kRounding = 1.0 / 12.0;  // the variance of rounding to whole DN
+  return fmt::format(
+      "\n[detector]\nkind = \"genicam\"\naddress = \"{}\"\nserial = \"{}\"\nwidth_px = {}\nheight_px = {}\n"
+      "pixel_format = \"Mono12\"\npacket_size_bytes = 1400\nshortest_exposure_s = {}\nlongest_exposure_s = {}\n"
+      "gain_db = 0.0\nframes_at_most = {}\n"
+      "\n[detector.aperture]\ncentre_x_px = {}\ncentre_y_px = {}\nradius_px = {}\n"
+      "\n[detector.model]\nelectrons_per_dn = {}\nread_noise_dn = {}\nfull_scale_dn = {}\nexposure_offset_s = 0.0\n"
+      "u_exposure_offset_s = 0.0\nu_linearity = {}\nu_dark_drift_dn_per_s = 0.0\n",
+      addresses.camera_address, spec.serial, spec.width_px, spec.height_px, wall_s(scene, spec.shortest_exposure_s),
+      wall_s(scene, spec.longest_exposure_s), spec.frames_at_most, aperture.centre_x_px, aperture.centre_y_px,
+      aperture.radius_px, spec.electrons_per_dn, std::sqrt(spec.read_noise_dn * spec.read_noise_dn + kRounding),
+      static_cast<int>(kFullScaleDn), spec.u_linearity);
+}
+
+std::string uncertainty_sections(const Scene& scene) {
+  const AngleSpec& angles = scene.angles;
+  const LampSpec& lamp = scene.lamp;
+  return fmt::format(
+      "\n[angles]\nu_zero_theta_i_deg = {:.10g}\nu_zero_theta_r_deg = {:.10g}\nu_zero_phi_r_deg = {:.10g}\n"
+      "u_repeat_deg = {:.10g}\ndetector_half_cone_deg = 0.5\nsource_half_cone_deg = 0.5\n"
+      "\n[lamp]\nu_after_monitor = {}\ncorrelation_s = {}\nu_reproducibility = {}\nmonitor_low = {:.6g}\nmonitor_high "
+      "= {:.6g}\n",
+      in_degrees(angles.u_zero_theta_i), in_degrees(angles.u_zero_theta_r), in_degrees(angles.u_zero_phi_r),
+      in_degrees(angles.u_repeat), lamp.u_after_monitor, wall_s(scene, lamp.correlation_s), lamp.u_reproducibility,
+      0.2 * lamp.power, 5.0 * lamp.power);
+}
+
+}  // namespace
+
+std::string instrument_toml(const Scene& scene, const WireAddresses& addresses) {
+  return fmt::format(
+             "# The instrument of the scene \"{0}\", written by goniosim. All times are wall time.\n"
+             "[instrument]\nname = \"simulated: {0}\"\n",
+             scene.name) +
+         stage_section(scene, addresses) + detector_section(scene, addresses) + uncertainty_sections(scene);
+}
+
+}  // namespace gonio::sim

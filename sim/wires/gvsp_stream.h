@@ -1,0 +1,46 @@
+#pragma once
+
+#include <netinet/in.h>
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "base/clock.h"
+#include "sim/devices/camera_model.h"
+
+namespace gonio::sim {
+
+/// Frames on their way to one receiver as GVSP packets (GigE Vision 2.0, section 24): paced, so that a small receive
+/// buffer does not overflow, and kept for a while to be sent again. Threads: owned by one.
+class GvspStream {
+ public:
+  /// `packet_size` counts IP, UDP and GVSP headers. The frame's id, modulo 65535, is its block id.
+  void add(const CameraFrame& frame, std::size_t packet_size, const sockaddr_in& receiver);
+  /// Packets that were lost on the way. Unknown frames are ignored.
+  void resend(int socket, std::uint16_t block_id, std::uint32_t first, std::uint32_t last);
+
+  /// Sends what is due. Returns when to come again, or nothing when all is sent.
+  std::optional<Instant> send_due(int socket, Instant now);
+  /// Forgets everything.
+  void clear();
+
+ private:
+  struct Block {
+    std::uint16_t id = 0;
+    std::size_t payload_size = 0;  ///< of one packet
+    sockaddr_in receiver{};
+    std::vector<std::uint8_t> leader;
+    std::vector<std::uint8_t> data;
+    std::vector<std::uint8_t> trailer;
+    std::uint32_t next_packet = 0;
+    [[nodiscard]] std::uint32_t last_packet() const;
+  };
+  static void send_packet(int socket, const Block& block, std::uint32_t packet, bool is_resent);
+
+  std::deque<Block> blocks_;  ///< the oldest first; all but the last few are sent
+  Instant next_send_{};
+};
+
+}  // namespace gonio::sim

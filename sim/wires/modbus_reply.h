@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "sim/devices/stage_face.h"
+
+namespace gonio::sim {
+
+/// Answers one Modbus TCP request (MBAP header and PDU, whole) from a stage's registers: FC 3, 6, 16, 23; anything else
+/// is exception 1. Bad counts are exception 3, absent or read-only registers exception 2 (Modbus Application Protocol
+/// V1.1b3). The frames themselves are built by libmodbus. Threads: owned by one.
+class ModbusReply {
+ public:
+  /// Errors: Internal (no socket pair).
+  [[nodiscard]] static Result<ModbusReply> make();
+  ModbusReply(ModbusReply&&) noexcept;
+  ModbusReply& operator=(ModbusReply&&) noexcept;
+  ~ModbusReply();
+
+  /// `request` at least 8 bytes long, as its MBAP header says. Writes act before reads are answered.
+  [[nodiscard]] std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request, StageFace& stage, Instant now);
+
+ private:
+  struct Impl;
+  explicit ModbusReply(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gonio::sim

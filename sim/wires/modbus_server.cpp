@@ -1,0 +1,125 @@
+#include "sim/wires/modbus_server.h"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+namespace gonio::sim {
+namespace {
+
+constexpr std::size_t kMostClients = 64;
+constexpr std::size_t kMostUnread = 64 * 1024;  // of a client that asks and does not read
+constexpr std::size_t kHeader = 6;              // of the MBAP header, up to and with the length
+constexpr std::size_t kShortest = 8;            // unit and function code
+constexpr std::size_t kLongest = 260;
+
+}  // namespace
+
+Result<std::unique_ptr<ModbusServer>> ModbusServer::start(LiveInstrument& instrument, const std::string& address,
+                                                          std::uint16_t port) {
+  auto listener = listen_tcp(address, port);
+  if (!listener) return failure(std::move(listener).error());
+  auto wake_up = make_wake_up();
+  if (!wake_up) return failure(std::move(wake_up).error());
+  auto reply = ModbusReply::make();
+  if (!reply) return failure(std::move(reply).error());
+  std::unique_ptr<ModbusServer> server(
+      new ModbusServer(instrument, *std::move(listener), *std::move(wake_up), *std::move(reply)));
+  server->thread_ = std::jthread([s = server.get()](const std::stop_token& stop) { s->run(stop); });
+  return server;
+}
+
+ModbusServer::ModbusServer(LiveInstrument& instrument, FileDescriptor listener, FileDescriptor wake_up,
+                           ModbusReply reply)
+    : instrument_(instrument), listener_(std::move(listener)), wake_up_(std::move(wake_up)), reply_(std::move(reply)) {}
+
+ModbusServer::~ModbusServer() {
+  thread_.request_stop();
+  wake(wake_up_);
+}
+
+void ModbusServer::set_refusing(bool on) {
+  is_refusing_ = on;
+  wake(wake_up_);
+}
+
+void ModbusServer::run(const std::stop_token& stop) {
+  std::vector<pollfd> watched;
+  while (!stop.stop_requested()) {
+    watched.assign({{wake_up_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}});
+    for (const Client& client : clients_) {
+      const bool has_more = !client.to_send.empty();
+      watched.push_back({client.socket.get(), static_cast<short>(has_more ? POLLIN | POLLOUT : POLLIN), 0});
+    }
+    if (::poll(watched.data(), watched.size(), -1) < 0) continue;
+    drain(wake_up_);
+    std::size_t k = 2;
+    for (Client& client : clients_) {
+      const short events = watched[k++].revents;
+      if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) receive(client);
+      if (!client.is_gone && !client.to_send.empty()) send(client);
+    }
+    if (is_refusing_) clients_.clear();
+    clients_.remove_if([](const Client& client) { return client.is_gone; });
+    if ((watched[1].revents & POLLIN) != 0) accept_clients();
+  }
+}
+
+void ModbusServer::accept_clients() {
+  for (;;) {
+    FileDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (socket.get() < 0) return;
+    if (is_refusing_ || clients_.size() >= kMostClients) continue;  // closed at once
+    const int on = 1;
+    setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    clients_.push_back({.socket = std::move(socket), .received = {}, .to_send = {}});
+  }
+}
+
+void ModbusServer::receive(Client& client) {
+  std::array<std::uint8_t, 2048> bytes{};
+  const ssize_t n = ::recv(client.socket.get(), bytes.data(), bytes.size(), 0);
+  if (n > 0) {
+    client.received.insert(client.received.end(), bytes.begin(), bytes.begin() + n);
+    take_requests(client);
+  } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
+    client.is_gone = true;
+  }
+}
+
+void ModbusServer::take_requests(Client& client) {
+  std::size_t at = 0;
+  while (client.received.size() - at >= kHeader) {
+    const auto rest = std::span(client.received).subspan(at);
+    const std::size_t length = kHeader + static_cast<std::size_t>(rest[4] << 8U | rest[5]);
+    const bool is_modbus = rest[2] == 0 && rest[3] == 0;
+    if (!is_modbus || length < kShortest || length > kLongest) {
+      client.is_gone = true;  // out of step: there is no way back into it
+      return;
+    }
+    if (rest.size() < length) break;
+    at += length;
+    if (is_silent_) continue;
+    const auto reply = instrument_.with(
+        [&](LiveInstrument::Parts& parts) { return reply_.answer(rest.first(length), parts.stage, parts.now); });
+    client.to_send.insert(client.to_send.end(), reply.begin(), reply.end());
+  }
+  client.received.erase(client.received.begin(), client.received.begin() + static_cast<std::ptrdiff_t>(at));
+  if (client.to_send.size() > kMostUnread) client.is_gone = true;
+}
+
+void ModbusServer::send(Client& client) {
+  const ssize_t n = ::send(client.socket.get(), client.to_send.data(), client.to_send.size(), MSG_NOSIGNAL);
+  if (n > 0) {
+    client.to_send.erase(client.to_send.begin(), client.to_send.begin() + n);
+  } else if (n < 0 && errno != EAGAIN && errno != EINTR) {
+    client.is_gone = true;
+  }
+}
+
+}  // namespace gonio::sim

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/result.h"
+#include "sim/wires/live_instrument.h"
+#include "sim/wires/modbus_reply.h"
+#include "sim/wires/sockets.h"
+
+namespace gonio::sim {
+
+/// The stage on Modbus TCP: many clients, one thread, whole requests only, so that one who stalls in mid-frame or never
+/// reads holds up nobody, STOP least of all. Threads: any.
+class ModbusServer {
+ public:
+  /// Serves from here on. `instrument` must outlive it. Errors: PortBusy, InvalidInput, Internal.
+  [[nodiscard]] static Result<std::unique_ptr<ModbusServer>> start(LiveInstrument& instrument,
+                                                                   const std::string& address, std::uint16_t port);
+  ~ModbusServer();
+  ModbusServer(const ModbusServer&) = delete;
+  ModbusServer& operator=(const ModbusServer&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const { return port_of(listener_); }
+  /// Requests are read, and neither acted upon nor answered.
+  void set_silent(bool on) { is_silent_ = on; }
+  /// Every connection is closed, and every new one at once.
+  void set_refusing(bool on);
+
+ private:
+  struct Client {
+    FileDescriptor socket;
+    std::vector<std::uint8_t> received;
+    std::vector<std::uint8_t> to_send;
+    bool is_gone = false;
+  };
+  ModbusServer(LiveInstrument& instrument, FileDescriptor listener, FileDescriptor wake_up, ModbusReply reply);
+  void run(const std::stop_token& stop);
+  void accept_clients();
+  void receive(Client& client);
+  void take_requests(Client& client);
+  void send(Client& client);
+
+  LiveInstrument& instrument_;
+  FileDescriptor listener_;
+  FileDescriptor wake_up_;
+  ModbusReply reply_;
+  std::list<Client> clients_;
+  std::atomic<bool> is_silent_{false};
+  std::atomic<bool> is_refusing_{false};
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace gonio::sim
