@@ -10,9 +10,6 @@
 namespace gonio::test {
 namespace {
 
-// Where the scenes' carriage has the sample; the reference is the other lit place.
-constexpr double kSampleMm = 0.0;
-
 // Nearer than any two planned points are to each other, farther than any error of the arms.
 bool is_near(double a_deg, double b_deg) {
   return std::abs(std::remainder(a_deg - b_deg, 360.0)) < 0.3;
@@ -33,13 +30,12 @@ std::map<std::string, long> Ledger::exposed_by_item(const StoreCopy& store, cons
   std::map<std::string, long> exposed{{"dark", seen.dark}};
   const std::map<long, StoredPoint> points = store.points(scan_);
   for (const ExposedPlace& place : seen.lit) {
-    const char* target = std::abs(place.carriage_mm - kSampleMm) < 1.0 ? "sample" : "reference";
     std::string item = "no planned point";
     for (const auto& [index, point] : points) {
       if (!is_near(point.theta_i_deg, place.theta_i_deg) || !is_near(point.theta_r_deg, place.theta_r_deg)) continue;
       // At theta_r = 0 the azimuth says nothing; the plan has one point there.
       if (point.theta_r_deg > 0.0 && !is_near(point.phi_r_deg, place.phi_r_deg)) continue;
-      item = std::to_string(index) + ' ' + target;
+      item = std::to_string(index) + ' ' + place.station;
     }
     exposed[item] += place.count;
   }

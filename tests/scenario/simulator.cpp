@@ -108,14 +108,15 @@ SeenStage Simulator::stage() const {
 
 SeenExposures Simulator::exposures() const {
   const json answer = json::parse(ask(R"({"query":"exposures"})"));
-  SeenExposures seen{.total = answer.at("exposures"), .dark = 0, .open = answer.at("open"), .lit = {}};
+  SeenExposures seen{.total = answer.at("exposures"), .dark = 0, .lit = {}};
   seen.dark = seen.total - answer.at("lit_exposures").get<long>();
   for (const json& place : answer.at("by_geometry")) {
-    seen.lit.push_back({.carriage_mm = place.at("carriage_mm"),
+    if (!place.at("lit").get<bool>()) continue;
+    seen.lit.push_back({.station = place.at("station"),
                         .theta_i_deg = place.at("theta_i_deg"),
                         .theta_r_deg = place.at("theta_r_deg"),
                         .phi_r_deg = place.at("phi_r_deg"),
-                        .count = place.at("count")});
+                        .count = place.at("exposures")});
   }
   return seen;
 }

@@ -28,19 +28,19 @@ struct SeenStage {
   long shutter_commands = 0;
 };
 
-/// Exposures with the same place of the stage, to 0.01 of each unit.
+/// Exposures with the same place of the stage, to 0.01 deg.
 struct ExposedPlace {
-  double carriage_mm = 0.0;
+  std::string station;  ///< "sample", "reference", "trap", "between"
   double theta_i_deg = 0.0;
   double theta_r_deg = 0.0;
   double phi_r_deg = 0.0;
   long count = 0;
 };
-/// What was exposed so far, by the simulator's own count, which no restart sets back.
+/// What was exposed so far, by the simulator's own count: each counts when it is triggered, and no restart sets it
+/// back.
 struct SeenExposures {
   long total = 0;
   long dark = 0;
-  bool open = false;  ///< one is under way
   std::vector<ExposedPlace> lit;
 };
 
