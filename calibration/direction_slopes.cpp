@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -175,28 +176,51 @@ struct LineSlope {
   bool has_neighbours = false;
 };
 
+/// The values along a line as they are to be differentiated: ln f where all of them stand clear of zero, else f itself.
+struct Differentiable {
+  std::vector<double> value;
+  std::vector<double> u;
+  double per_unit = 1.0;  ///< df for a change of 1
+};
+
+Differentiable differentiable(std::span<const SlopePoint> points, const std::vector<const Stop*>& nodes) {
+  constexpr double kClearOfZero = 5.0;  // standard uncertainties: then ln f is normal too
+  const bool has_logarithm = std::ranges::all_of(nodes, [&](const Stop* node) {
+    const SlopePoint& p = points[node->point];
+    return p.value > kClearOfZero * p.u_random && p.value > Brdf{};
+  });
+  Differentiable d;
+  for (const Stop* node : nodes) {
+    const double f = points[node->point].value.si();
+    const double u = points[node->point].u_random.si();
+    d.value.push_back(has_logarithm ? std::log(f) : f);
+    d.u.push_back(has_logarithm ? u / f : u);
+  }
+  if (has_logarithm) d.per_unit = points[nodes.front()->point].value.si();
+  return d;
+}
+
 LineSlope slope_on_line(std::span<const SlopePoint> points, const Line& line, std::size_t own) {
-  const std::vector<const Stop*> neighbours = nearest(line, own);
   std::vector<const Stop*> nodes = {&line[own]};
+  std::ranges::copy(nearest(line, own), std::back_inserter(nodes));
+  const Differentiable d = differentiable(points, nodes);
   std::vector<double> x = {0.0};
   LineSlope best;
   double least = INFINITY;
   double previous = 0.0;
-  for (const Stop* neighbour : neighbours) {
-    nodes.push_back(neighbour);
-    x.push_back(neighbour->coordinate - line[own].coordinate);
+  for (std::size_t order = 1; order < nodes.size(); ++order) {
+    x.push_back(nodes[order]->coordinate - line[own].coordinate);
     const std::vector<double> weights = derivative_weights(x);
     double slope = 0.0;
     double noise2 = 0.0;
-    for (std::size_t j = 0; j < nodes.size(); ++j) {
-      const SlopePoint& p = points[nodes[j]->point];
-      slope += weights[j] * p.value.si();
-      noise2 += weights[j] * weights[j] * p.u_random.si() * p.u_random.si();
+    for (std::size_t j = 0; j <= order; ++j) {
+      slope += weights[j] * d.value[j];
+      noise2 += std::pow(weights[j] * d.u[j], 2);
     }
     const double missed = std::abs(slope - previous);
     if (noise2 + missed * missed < least) {
       least = noise2 + missed * missed;
-      best = {.slope = line[own].sign * slope, .unresolved = missed, .has_neighbours = true};
+      best = {.slope = line[own].sign * d.per_unit * slope, .unresolved = d.per_unit * missed, .has_neighbours = true};
     }
     previous = slope;
   }

@@ -36,8 +36,9 @@ struct DirectionSlopes {
 /// runs
 ///   through the normal into the opposite half plane; for an isotropic sample a point also stands for its mirror image
 ///   in the plane of incidence, and theta = 0 belongs to all lines through it;
-/// - polynomials through the point and its 1, 2, 3, 4 nearest neighbours within 45 deg give derivatives s_1 .. s_4;
-///   with s_0 = 0, |s_p - s_(p-1)| bounds what order p still misses on a smooth surface;
+/// - polynomials of ln f (lobes and canopies are products; of f where a value does not stand 5 u clear of zero) through
+///   the point and its 1, 2, 3, 4 nearest neighbours within 45 deg give derivatives s_1 .. s_4; with s_0 = 0,
+///   |s_p - s_(p-1)| bounds what order p still misses on a smooth surface;
 /// - taken is the p with the least noise^2 + |s_p - s_(p-1)|^2, `unresolved` is that difference. The noise itself is
 /// part
 ///   of s_p, so the expectation of s_p^2 holds it already;
