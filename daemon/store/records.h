@@ -172,8 +172,10 @@ struct BrdfRow {
   double u_random_per_sr = 0.0;
   double effective_dof = 0.0;  ///< of the whole; +infinity is stored as 0: "no less than normal"
   std::uint32_t flags = 0;
-  Geometry reported;                         ///< the directions that the value holds for
-  std::vector<double> sensitivities_per_sr;  ///< c_k u_k of each shared component, in the calibration's order
+  Geometry reported;  ///< the directions that the value holds for
+  /// The shared terms that are not zero, as pairs (component's place in `component_names`, c_k u_k in sr^-1),
+  /// flattened: a long scan has hundreds of components (each dark visit is one) and a point few of them.
+  std::vector<double> sensitivities_per_sr;
 };
 /// The BRDF of a scan by one calibration. A scan has as many as it was computed; the newest counts.
 struct NewBrdf {

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/sequencer/measurement.h"
+#include "daemon/sequencer/messages.h"
+#include "daemon/sequencer/scan_items.h"
+#include "daemon/sequencer/time_estimate.h"
+#include "daemon/store/records.h"
+
+namespace gonio::daemon {
+
+/// One thing that the instrument is doing for a scan: a move, and the exposures after it.
+struct Job {
+  enum class Kind : std::uint8_t { Item, Dark, Park };
+  enum class Phase : std::uint8_t { ToMove, Moving, InPlace, Exposing };
+
+  Kind kind = Kind::Item;
+  ItemKey item;  ///< of an Item
+  std::optional<Measurement> measurement;
+  drivers::MotionTarget target{};  ///< what must hold during the exposures
+  Phase phase = Phase::ToMove;
+  Instant started{};
+  Instant asked{};                ///< when the call now open was made
+  Duration settle{};              ///< of the axes that the move in hand moves
+  std::uint32_t gate_before = 0;  ///< the stage's count before the exposure in hand
+  TimeParts time;
+  std::optional<drivers::StageState> gate;  ///< after the exposure in hand, once the stage has answered
+  std::optional<FrameSummary> frame;        ///< likewise the camera
+};
+
+/// A scan that is not over, with all that the sequencer knows of it. The durable part is the store's; the rest is made
+/// anew at each start.
+struct ActiveScan {
+  ActiveScan(UnfinishedScan stored, const Instrument& instrument)
+      : id(stored.id),
+        name(stored.name),
+        state(stored.state),
+        finish_asked(stored.finish_asked),
+        policy(stored.policy),
+        instrument_hash(stored.instrument_hash),
+        merged(stored.merged),
+        points(std::move(stored.points)),
+        holds(std::move(stored.holds)),
+        spent(stored.spent),
+        items(points.size(), std::move(stored.order), policy.block, stored.accepted, stored.skipped),
+        chooser(instrument, policy),
+        dark_owed(stored.dark_owed) {
+    for (const auto& [item, count] : stored.attempts) failures[item] = count;
+    for (const Duration exposure : stored.exposures_used) note_rung_of(exposure);
+  }
+
+  void note_rung_of(Duration exposure) {
+    const auto& rungs = chooser.rungs();
+    // Cameras round an exposure to their own clock: one per cent is far less than the factor of two between rungs.
+    for (std::size_t rung = 0; rung < rungs.size(); ++rung) {
+      if (std::abs(in_seconds(exposure) / in_seconds(rungs[rung]) - 1.0) < 0.01) note_rung(rung);
+    }
+  }
+  void note_rung(std::size_t rung) {
+    lowest_rung = std::min(lowest_rung.value_or(rung), rung);
+    highest_rung = std::max(highest_rung.value_or(rung), rung);
+  }
+  [[nodiscard]] bool has_hold(HoldName hold) const {
+    return std::any_of(holds.begin(), holds.end(), [hold](const Hold& h) { return h.name == hold; });
+  }
+
+  ScanId id;
+  std::string name;
+  ScanState state;
+  bool finish_asked;
+  ScanPolicy policy;
+  std::string instrument_hash;
+  std::int64_t merged;
+  std::vector<ScanPoint> points;
+  std::vector<Hold> holds;
+  TimeParts spent;
+  ScanItems items;
+  ExposureChooser chooser;
+
+  std::optional<Command> finish_command;  ///< a finish that waits for the item in hand
+  bool is_found = false;            ///< was not over at start-up: what the store says must first become `interrupted`
+  std::map<ItemKey, int> failures;  ///< attempts that failed, of items that are not decided
+  std::int64_t failed_attempts = 0;
+  bool dark_owed;                          ///< items were accepted after the last dark
+  std::optional<Instant> last_dark;        ///< of this run: before the first, no level is known and nothing is measured
+  std::optional<std::size_t> lowest_rung;  ///< used by accepted readings
+  std::optional<std::size_t> highest_rung;
+  int most_frames = 1;
+  int dark_failures = 0;
+  std::int64_t uncommitted = 0;  ///< items accepted here whose commit has not returned
+  std::optional<Job> job;
+  DurationStatistics sample_time;
+  DurationStatistics reference_time;
+  DurationStatistics dark_time;
+
+  /// While preparing: what is verified so far.
+  enum class Preparation : std::uint8_t { Detector, Look, LookAgain, Reset, Home, Verified };
+  Preparation preparation = Preparation::Detector;
+  bool reset_tried = false;
+  Instant look_again_at{};
+  Instant prepared_since{};
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,98 @@
+#include "daemon/sequencer/exposure_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gonio::daemon {
+
+namespace {
+
+// The mean in the aperture stays below this share of full scale: the brightest pixel and the next geometry lie above
+// it.
+constexpr double kFill = 0.5;
+constexpr Duration kFrameTimeAtFirst = std::chrono::milliseconds(5);
+constexpr double kFrameTimeGain = 0.1;  // of an exponential mean: ten frames or so
+
+}  // namespace
+
+ExposureChooser::ExposureChooser(const Instrument& instrument, const ScanPolicy& policy)
+    : target_snr_(policy.target_snr),
+      max_time_(policy.max_time),
+      frames_at_most_(instrument.detector.frames_at_most),
+      electrons_per_dn_(instrument.model.detector.electrons_per_dn /
+                        std::pow(10.0, instrument.detector.gain_db / 20.0)),
+      read_noise_dn_(instrument.model.detector.read_noise_dn),
+      full_scale_dn_(instrument.model.detector.full_scale_dn),
+      frame_time_(kFrameTimeAtFirst) {
+  const Duration longest = std::min(instrument.detector.longest_exposure, policy.max_time);
+  Duration exposure = instrument.detector.shortest_exposure;
+  do {
+    rungs_.push_back(exposure);
+    exposure *= 2;
+  } while (exposure <= longest);
+  dark_dn_.assign(rungs_.size(), 0.0);
+}
+
+double ExposureChooser::frames_wished(std::size_t rung, const Signal& signal) const {
+  const double net = signal.rate_dn_per_s * in_seconds(rungs_[rung]);
+  // One frame: photon noise, and read noise twice because a dark of the same rung is subtracted (EMVA 1288, mean of n
+  // pixels).
+  const double variance =
+      (std::max(net, 0.0) / electrons_per_dn_ + 2.0 * read_noise_dn_ * read_noise_dn_) / signal.pixels;
+  if (net <= std::sqrt(variance)) return std::numeric_limits<double>::infinity();  // nothing but noise
+  return std::ceil(target_snr_ * target_snr_ * variance / (net * net));
+}
+
+int ExposureChooser::frames_allowed(std::size_t rung) const {
+  const auto by_time = max_time_ / rungs_[rung];
+  return static_cast<int>(std::clamp<std::int64_t>(by_time, 1, frames_at_most_));
+}
+
+int ExposureChooser::frames_needed(std::size_t rung, const Signal& signal) const {
+  const double wished = frames_wished(rung, signal);
+  return static_cast<int>(std::clamp(wished, 1.0, static_cast<double>(frames_allowed(rung))));
+}
+
+bool ExposureChooser::reaches(std::size_t rung, const Signal& signal) const {
+  return frames_wished(rung, signal) <= frames_allowed(rung);
+}
+
+Duration ExposureChooser::cost(const ExposurePlan& plan) const {
+  return plan.frames * (rungs_[plan.rung] + frame_time_);
+}
+
+ExposurePlan ExposureChooser::choose(const Signal& signal, std::size_t ceiling) const {
+  std::optional<ExposurePlan> cheapest;
+  ExposurePlan nearest;
+  double nearest_lack = std::numeric_limits<double>::infinity();
+  for (std::size_t rung = 0; rung <= std::min(ceiling, rungs_.size() - 1); ++rung) {
+    const double level = dark_dn_[rung] + signal.rate_dn_per_s * in_seconds(rungs_[rung]);
+    if (rung > 0 && level > kFill * full_scale_dn_) break;
+    const ExposurePlan plan{rung, frames_needed(rung, signal)};
+    if (reaches(rung, signal) && (!cheapest || cost(plan) < cost(*cheapest))) cheapest = plan;
+    const double lack = frames_wished(rung, signal) / plan.frames;
+    if (lack < nearest_lack || std::isinf(lack)) {  // pure noise: the longest exposure sees the most
+      nearest_lack = lack;
+      nearest = plan;
+    }
+  }
+  return cheapest.value_or(nearest);
+}
+
+ExposurePlan ExposureChooser::first_plan(calibration::Target target, int filter) const {
+  const auto known = last_.find({target, filter});
+  if (known == last_.end()) return {.rung = rungs_.size() / 2, .frames = 1};
+  return choose(known->second, rungs_.size() - 1);
+}
+
+void ExposureChooser::remember(calibration::Target target, int filter, const Signal& signal) {
+  last_[{target, filter}] = signal;
+}
+
+void ExposureChooser::learn_frame_time(Duration beyond_exposure) {
+  frame_time_ += Duration(
+      static_cast<std::int64_t>(kFrameTimeGain * static_cast<double>((beyond_exposure - frame_time_).count())));
+}
+
+}  // namespace gonio::daemon

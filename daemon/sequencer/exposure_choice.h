@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/clock.h"
+#include "calibration/raw_reading.h"
+#include "daemon/config/instrument.h"
+#include "daemon/store/records.h"
+
+namespace gonio::daemon {
+
+/// A rung of the exposure ladder, and how many frames on it.
+struct ExposurePlan {
+  std::size_t rung = 0;
+  int frames = 1;
+  friend bool operator==(const ExposurePlan&, const ExposurePlan&) = default;
+};
+
+/// Chooses exposures and frame counts from the photon-transfer model of the detector (EMVA 1288): the cheapest rung
+/// that reaches the plan's signal-to-noise within its time, well below full scale; if none does, the one that comes
+/// nearest. It learns the dark levels from dark visits, the signal from what was measured last, the time of a frame
+/// from frames.
+class ExposureChooser {
+ public:
+  ExposureChooser(const Instrument& instrument, const ScanPolicy& policy);
+
+  /// shortest * 2^n, up to the longest that the detector and the plan's max_time allow; never empty.
+  [[nodiscard]] const std::vector<Duration>& rungs() const { return rungs_; }
+
+  /// Signal (DN above dark) per second of exposure, as the mean in the aperture.
+  struct Signal {
+    double rate_dn_per_s = 0.0;
+    std::uint32_t pixels = 1;
+  };
+  /// `ceiling`: the highest rung that may be used (a higher one saturated).
+  [[nodiscard]] ExposurePlan choose(const Signal& signal, std::size_t ceiling) const;
+  /// How many frames on `rung` reach the plan's signal-to-noise: bounded by the plan's time and the instrument.
+  [[nodiscard]] int frames_needed(std::size_t rung, const Signal& signal) const;
+  [[nodiscard]] bool reaches(std::size_t rung, const Signal& signal) const;
+  /// The time of a plan, frame transfer included.
+  [[nodiscard]] Duration cost(const ExposurePlan& plan) const;
+
+  /// For the first frame of an item: by the last signal of this target and filter, else a probe in the middle of the
+  /// ladder.
+  [[nodiscard]] ExposurePlan first_plan(calibration::Target target, int filter) const;
+  void remember(calibration::Target target, int filter, const Signal& signal);
+  void learn_dark(std::size_t rung, double mean_dn) { dark_dn_[rung] = mean_dn; }
+  /// The dark level of a rung; 0 before it was measured.
+  [[nodiscard]] double dark_dn(std::size_t rung) const { return dark_dn_[rung]; }
+  void learn_frame_time(Duration beyond_exposure);
+
+ private:
+  [[nodiscard]] double frames_wished(std::size_t rung, const Signal& signal) const;
+  [[nodiscard]] int frames_allowed(std::size_t rung) const;
+
+  std::vector<Duration> rungs_;
+  std::vector<double> dark_dn_;
+  std::map<std::pair<calibration::Target, int>, Signal> last_;
+  double target_snr_;
+  Duration max_time_;
+  int frames_at_most_;
+  double electrons_per_dn_;
+  double read_noise_dn_;
+  double full_scale_dn_;
+  Duration frame_time_;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/store/records.h"
+
+namespace gonio::daemon {
+
+/// The frames of one job: which exposure is next, and when there are enough. Pure; the chooser is the scan's.
+class Measurement {
+ public:
+  enum class Verdict : std::uint8_t { More, Done, Saturated };
+
+  /// Frames of a target until the plan's signal-to-noise is reached: a probe if nothing is known, a lower rung after
+  /// saturation.
+  [[nodiscard]] static Measurement of_item(const ExposureChooser& chooser, calibration::Target target, int filter);
+  /// `frames` of each rung from `lowest` to `highest`.
+  [[nodiscard]] static Measurement of_dark(std::size_t lowest, std::size_t highest, int frames);
+
+  /// The rung of the next frame.
+  [[nodiscard]] std::size_t rung() const { return rung_; }
+  [[nodiscard]] Verdict add(ReadingRecord reading, ExposureChooser& chooser);
+  /// All frames so far, probes and saturated ones among them (not `used`).
+  [[nodiscard]] const std::vector<ReadingRecord>& readings() const { return readings_; }
+  /// How many of them count, on the last rung.
+  [[nodiscard]] int used_frames() const { return on_rung_; }
+  /// Their mean in the aperture.
+  [[nodiscard]] double mean_dn() const { return on_rung_ == 0 ? 0.0 : sum_dn_ / on_rung_; }
+
+ private:
+  Verdict add_dark(double mean_dn, ExposureChooser& chooser);
+  Verdict add_saturated();
+  Verdict add_lit(std::uint32_t pixels, ExposureChooser& chooser);
+  void change_rung(std::size_t rung);
+
+  bool is_dark_ = false;
+  calibration::Target target_ = calibration::Target::Dark;
+  int filter_ = 0;
+  std::size_t rung_ = 0;
+  std::size_t ceiling_ = 0;
+  int dark_frames_ = 0;
+  int changes_ = 0;
+  int on_rung_ = 0;
+  double sum_dn_ = 0.0;
+  std::vector<ReadingRecord> readings_;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,113 @@
+#include "daemon/sequencer/scan_events.h"
+
+#include <nlohmann/json.hpp>
+
+namespace gonio::daemon {
+
+namespace {
+
+using nlohmann::json;
+
+json parts_s(const TimeParts& time) {
+  return {{"move_s", in_seconds(time.move)},
+          {"settle_s", in_seconds(time.settle)},
+          {"expose_s", in_seconds(time.expose)},
+          {"read_s", in_seconds(time.read)},
+          {"idle_s", in_seconds(time.idle)}};
+}
+
+// Text from outside may hold broken UTF-8: it is replaced, never thrown over.
+NewEvent event(std::string kind, ScanId scan, std::string who, const json& body) {
+  return NewEvent{.kind = std::move(kind),
+                  .scan = scan,
+                  .who = std::move(who),
+                  .json = body.dump(-1, ' ', false, json::error_handler_t::replace)};
+}
+
+json transition_body(const ScanTransition& t) {
+  return {{"from", scan_state_name(t.from)}, {"to", scan_state_name(t.to)}, {"reason", t.reason}};
+}
+
+std::string kind_of(const ScanTransition& t) {
+  return "scan-" + std::string(scan_state_name(t.to));
+}
+
+// The stage's numbers of the exposures: they tell an exposure from its repetition.
+json gate_counts(const std::vector<ReadingRecord>& readings) {
+  json counts = json::array();
+  for (const ReadingRecord& reading : readings) counts.push_back(reading.gate_count);
+  return counts;
+}
+
+}  // namespace
+
+NewEvent event_submitted(const NewScan& scan) {
+  return event("scan-submitted", 0, scan.who,
+               {{"name", scan.name},
+                {"sample", scan.sample},
+                {"points", scan.planned.points.size()},
+                {"blocked", scan.planned.blocked},
+                {"merged", scan.planned.merged},
+                {"items", scan.planned.items}});
+}
+
+NewEvent event_transition(const ScanTransition& t) {
+  return event(kind_of(t), t.scan, t.who, transition_body(t));
+}
+
+NewEvent event_over(const ScanTransition& t, const Progress& progress) {
+  json body = transition_body(t);
+  body["points"] = progress.points;
+  body["blocked"] = progress.blocked;
+  body["merged"] = progress.merged;
+  body["items"] = progress.items;
+  body["accepted"] = progress.accepted;
+  body["skipped"] = progress.skipped;
+  body["time"] = parts_s(progress.spent);
+  return event(kind_of(t), t.scan, t.who, body);
+}
+
+NewEvent event_hold_added(ScanId scan, const Hold& hold) {
+  return event("hold-added", scan, hold.owner,
+               {{"hold", hold_name(hold.name)}, {"owner", hold.owner}, {"reason", hold.reason}});
+}
+
+NewEvent event_holds_cleared(ScanId scan, const std::vector<Hold>& holds, const std::string& who) {
+  json names = json::array();
+  for (const Hold& hold : holds) names.push_back(hold_name(hold.name));
+  return event("holds-cleared", scan, who, {{"holds", names}});
+}
+
+NewEvent event_attempt(const NewAttempt& attempt, const Measurement& measurement) {
+  json body{{"point", attempt.item.point},
+            {"target", target_name(attempt.item.target)},
+            {"frames", measurement.used_frames()},
+            {"mean_dn", measurement.mean_dn()},
+            {"gate_counts", gate_counts(attempt.readings)},
+            {"time", parts_s(attempt.time)}};
+  if (!attempt.readings.empty()) body["exposure_s"] = in_seconds(attempt.readings.back().settings.exposure);
+  if (attempt.error) {
+    body["error"] = {{"code", traits(attempt.error->code).name}, {"detail", describe(*attempt.error)}};
+  }
+  const std::string kind = attempt.outcome == AttemptOutcome::Accepted ? "item-accepted"
+                           : attempt.outcome == AttemptOutcome::Failed ? "item-failed"
+                                                                       : "item-dropped";
+  return event(kind, attempt.scan, "goniod", body);
+}
+
+NewEvent event_skipped(const SkipItem& skip) {
+  return event("item-skipped", skip.scan, skip.who,
+               {{"point", skip.item.point}, {"target", target_name(skip.item.target)}, {"reason", skip.reason}});
+}
+
+NewEvent event_dark_visit(const NewVisit& visit) {
+  return event(
+      "dark-visit", visit.scan, "goniod",
+      {{"frames", visit.readings.size()}, {"gate_counts", gate_counts(visit.readings)}, {"time", parts_s(visit.time)}});
+}
+
+NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch) {
+  return event("stop", scan, who, {{"epoch", epoch}});
+}
+
+}  // namespace gonio::daemon

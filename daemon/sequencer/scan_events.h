@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/sequencer/command.h"
+#include "daemon/sequencer/measurement.h"
+#include "daemon/store/records.h"
+
+namespace gonio::daemon {
+
+/// The events that the sequencer writes: kind and JSON. README.md lists them for clients; nlohmann-json stays in the
+/// .cpp.
+[[nodiscard]] NewEvent event_submitted(const NewScan& scan);
+[[nodiscard]] NewEvent event_transition(const ScanTransition& transition);
+/// With the scan's figures: what its summary shows of the run.
+[[nodiscard]] NewEvent event_over(const ScanTransition& transition, const Progress& progress);
+[[nodiscard]] NewEvent event_hold_added(ScanId scan, const Hold& hold);
+[[nodiscard]] NewEvent event_holds_cleared(ScanId scan, const std::vector<Hold>& holds, const std::string& who);
+/// "item-accepted", "item-failed", "item-dropped" by the attempt's outcome.
+[[nodiscard]] NewEvent event_attempt(const NewAttempt& attempt, const Measurement& measurement);
+[[nodiscard]] NewEvent event_skipped(const SkipItem& skip);
+[[nodiscard]] NewEvent event_dark_visit(const NewVisit& visit);
+[[nodiscard]] NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch);
+
+}  // namespace gonio::daemon

@@ -1,0 +1,74 @@
+#include "daemon/sequencer/scan_items.h"
+
+#include <utility>
+
+namespace gonio::daemon {
+
+using calibration::Target;
+
+ScanItems::ScanItems(std::size_t points, std::vector<std::int32_t> order, Duration block,
+                     const std::vector<ItemKey>& accepted, const std::vector<ItemKey>& skipped)
+    : order_(std::move(order)),
+      pass_(block / 2),
+      sample_(points, Fate::Open),
+      reference_(points, Fate::Open),
+      open_samples_(static_cast<std::int64_t>(order_.size())),
+      open_references_(open_samples_) {
+  for (const ItemKey& item : accepted) decide(item, Fate::Accepted);
+  for (const ItemKey& item : skipped) decide(item, Fate::Skipped);
+  for (const std::int32_t point : order_) {
+    const auto p = static_cast<std::size_t>(point);
+    if (sample_[p] == Fate::Accepted && reference_[p] == Fate::Open) block_.push_back(point);
+  }
+  on_reference_ = !block_.empty();
+}
+
+ScanItems::Fate& ScanItems::fate(const ItemKey& item) {
+  auto& fates = item.target == Target::Sample ? sample_ : reference_;
+  return fates[static_cast<std::size_t>(item.point)];
+}
+
+void ScanItems::decide(const ItemKey& item, Fate decided) {
+  if (fate(item) != Fate::Open) return;
+  fate(item) = decided;
+  --(item.target == Target::Sample ? open_samples_ : open_references_);
+  ++(decided == Fate::Accepted ? accepted_ : skipped_);
+}
+
+std::optional<ItemKey> ScanItems::next(Instant now) {
+  while (cursor_ < order_.size() && sample_[static_cast<std::size_t>(order_[cursor_])] != Fate::Open) ++cursor_;
+  if (!on_reference_) {
+    const bool block_is_over = !block_.empty() && now - block_began_ >= pass_;
+    if (cursor_ < order_.size() && !block_is_over) return ItemKey{order_[cursor_], Target::Sample};
+    on_reference_ = true;
+  }
+  while (!block_.empty() && reference_[static_cast<std::size_t>(block_.back())] != Fate::Open) block_.pop_back();
+  if (!block_.empty()) return ItemKey{block_.back(), Target::Reference};
+  on_reference_ = false;
+  if (cursor_ < order_.size()) return ItemKey{order_[cursor_], Target::Sample};
+  return std::nullopt;
+}
+
+void ScanItems::accept(const ItemKey& item, Instant now) {
+  decide(item, Fate::Accepted);
+  if (item.target != Target::Sample) return;
+  if (block_.empty()) block_began_ = now;
+  block_.push_back(item.point);
+}
+
+std::vector<ItemKey> ScanItems::skip(const ItemKey& item) {
+  std::vector<ItemKey> gone{item};
+  decide(item, Fate::Skipped);
+  const ItemKey partner{item.point, Target::Reference};
+  if (item.target == Target::Sample && fate(partner) == Fate::Open) {
+    decide(partner, Fate::Skipped);
+    gone.push_back(partner);
+  }
+  return gone;
+}
+
+std::int64_t ScanItems::open(Target target) const {
+  return target == Target::Sample ? open_samples_ : open_references_;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/clock.h"
+#include "daemon/store/records.h"
+
+namespace gonio::daemon {
+
+/// Which items of a scan are decided, and which is next. Same-geometry mode: sample items for half of `block`, then the
+/// reference at the same geometries, last first, from where the arms stand: so partners lie within `block` of each
+/// other.
+class ScanItems {
+ public:
+  /// `order`: the points to be measured, in order. Decisions of earlier runs close their block first.
+  ScanItems(std::size_t points, std::vector<std::int32_t> order, Duration block, const std::vector<ItemKey>& accepted,
+            const std::vector<ItemKey>& skipped);
+
+  /// The next item that is not decided; none when all are. The same until it is decided, unless the block's time
+  /// passes.
+  [[nodiscard]] std::optional<ItemKey> next(Instant now);
+  void accept(const ItemKey& item, Instant now);
+  /// Skipping a sample item skips its partner too: what is skipped, to be recorded.
+  std::vector<ItemKey> skip(const ItemKey& item);
+
+  [[nodiscard]] std::int64_t total() const { return 2 * static_cast<std::int64_t>(order_.size()); }
+  [[nodiscard]] std::int64_t accepted() const { return accepted_; }
+  [[nodiscard]] std::int64_t skipped() const { return skipped_; }
+  /// Not decided yet.
+  [[nodiscard]] std::int64_t open(calibration::Target target) const;
+
+ private:
+  enum class Fate : std::uint8_t { Open, Accepted, Skipped };
+  Fate& fate(const ItemKey& item);
+  void decide(const ItemKey& item, Fate fate);
+
+  std::vector<std::int32_t> order_;
+  Duration pass_;
+  std::vector<Fate> sample_;
+  std::vector<Fate> reference_;
+  std::size_t cursor_ = 0;           ///< in order_: all before it are decided as samples
+  std::vector<std::int32_t> block_;  ///< points whose reference is owed
+  Instant block_began_{};
+  bool on_reference_ = false;
+  std::int64_t accepted_ = 0;
+  std::int64_t skipped_ = 0;
+  std::int64_t open_samples_ = 0;
+  std::int64_t open_references_ = 0;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,315 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "daemon/planner/planner.h"
+#include "daemon/sequencer/failure_policy.h"
+#include "daemon/sequencer/scan_events.h"
+#include "daemon/sequencer/sequencer_impl.h"
+
+namespace gonio::daemon {
+
+namespace {
+
+using calibration::Target;
+using stage::Axis;
+
+constexpr const char* kDaemon = "goniod";
+constexpr int kFewestDarkFrames = 4;
+constexpr int kMostDarkFrames = 16;
+
+// How long the slowest of the axes that this move moves will settle.
+Duration settle_time(const drivers::StageConfig& stage, const drivers::MotionTarget& target,
+                     const std::optional<drivers::StageState>& from) {
+  Duration settle{};
+  for (const Axis axis : stage::kAllAxes) {
+    const std::size_t a = stage::index_of(axis);
+    if (!target[a] || (from && std::abs(from->axes[a].position - *target[a]) <= stage.axes[a].window)) continue;
+    settle = std::max(settle, stage.axes[a].settle);
+  }
+  return settle;
+}
+
+ReadingRecord reading_from(const FrameSummary& frame, const drivers::StageState& after, Instant middle) {
+  return ReadingRecord{.region = frame.region,
+                       .settings = frame.settings,
+                       .camera_frame_id = frame.frame_id,
+                       .camera_time_ns = frame.camera_time_ns,
+                       .camera_temperature_c = frame.temperature_c,
+                       .gate_count = after.gate.count,
+                       .open_counts = after.gate.open_counts,
+                       .close_counts = after.gate.close_counts,
+                       .monitor_mean = after.gate.monitor_mean,
+                       .monitor_se = after.gate.monitor_se,
+                       .monitor_samples = after.gate.monitor_samples,
+                       .lamp_temperature_c = after.lamp_temperature_c,
+                       .detector_temperature_c = after.detector_temperature_c,
+                       .room_temperature_c = after.room_temperature_c,
+                       .humidity_percent = after.humidity_percent,
+                       .at = middle};
+}
+
+}  // namespace
+
+// ---- beginning ----
+
+void Sequencer::Impl::start_item(const ItemKey& item, Instant now) {
+  const ScanPoint& point = scan->points[static_cast<std::size_t>(item.point)];
+  auto target = axis_targets(point.geometry, point.wavelength, config.instrument);
+  scan->job = Job{.kind = Job::Kind::Item, .item = item, .started = now};
+  if (!target) return job_failed(target.error(), now);
+  const CarriagePositions& carriage = config.instrument.carriage;
+  (*target)[stage::index_of(Axis::Carriage)] =
+      in_millimetres(item.target == Target::Sample ? carriage.sample : carriage.reference);
+  scan->job->target = *target;
+  const auto filter = static_cast<int>(std::lround((*target)[stage::index_of(Axis::FilterWheel)].value_or(0.0)));
+  scan->job->measurement = Measurement::of_item(scan->chooser, item.target, filter);
+}
+
+// The first dark of a run reads the whole ladder: the levels are needed to choose exposures, and whichever rung is used
+// later then has a dark on both sides. Later ones read the rungs in use and those between.
+void Sequencer::Impl::start_dark(Instant now) {
+  const bool is_first = !scan->last_dark && scan->state == ScanState::Running;
+  const std::size_t top = scan->chooser.rungs().size() - 1;
+  const std::size_t lowest = is_first ? 0 : scan->lowest_rung.value_or(0);
+  const std::size_t highest = is_first ? top : scan->highest_rung.value_or(top);
+  const int frames = std::clamp(scan->most_frames, kFewestDarkFrames, kMostDarkFrames);
+  scan->job = Job{.kind = Job::Kind::Dark, .started = now};
+  scan->job->measurement = Measurement::of_dark(lowest, highest, frames);
+}
+
+void Sequencer::Impl::start_park(Instant now) {
+  scan->job = Job{.kind = Job::Kind::Park, .started = now};
+}
+
+void Sequencer::Impl::drive_job(Instant now) {
+  Job& job = *scan->job;
+  if (!channels_are_free()) return;
+  if (job.phase == Job::Phase::ToMove) {
+    const bool is_lit = job.kind == Job::Kind::Item;
+    job.phase = Job::Phase::Moving;
+    job.asked = now;
+    job.settle = settle_time(config.instrument.stage, job.target, stage);
+    return ask_stage(StageUse::Move, MoveTo{.epoch = epoch,
+                                            .target = job.target,
+                                            .source_shutter_open = job.kind != Job::Kind::Park,
+                                            .detector_shutter_open = is_lit});
+  }
+  if (job.phase != Job::Phase::InPlace) return;
+  if (job.kind == Job::Kind::Park) {
+    const bool is_early = scan->items.open(Target::Sample) + scan->items.open(Target::Reference) > 0;
+    scan->job.reset();
+    return transition(is_early ? ScanEvent::ParkedEarly : ScanEvent::Parked, now, kDaemon,
+                      is_early ? "finished early, data kept" : "complete");
+  }
+  // At most one item is ever uncommitted: its commit returns before the next light is taken.
+  if (!has_uncommitted_item()) begin_exposure(now);
+}
+
+void Sequencer::Impl::on_moved(const Result<drivers::StageState>& state, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!state) return job_failed(state.error(), now);
+  Job& job = *scan->job;
+  const Duration elapsed = now - job.asked;
+  const Duration settled = std::min(elapsed, job.settle);
+  job.time.settle += settled;
+  job.time.move += elapsed - settled;
+  job.phase = Job::Phase::InPlace;
+}
+
+// ---- exposing ----
+
+void Sequencer::Impl::begin_exposure(Instant now) {
+  Job& job = *scan->job;
+  const Duration exposure = scan->chooser.rungs()[job.measurement->rung()];
+  job.phase = Job::Phase::Exposing;
+  job.asked = now;
+  job.gate.reset();
+  job.frame.reset();
+  job.gate_before = stage->gate.count;
+  ask_stage(StageUse::Gate, WatchGate{.after = job.gate_before, .expected = exposure, .held = job.target});
+  ask_detector(DetectorUse::Frame,
+               TakeFrame{.settings = {.exposure = exposure, .gain_db = config.instrument.detector.gain_db}});
+}
+
+void Sequencer::Impl::on_gate(const Result<drivers::StageState>& state, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!state) return job_failed(state.error(), now);
+  if (state->gate.count != scan->job->gate_before + 1) {
+    return job_failed(Error{.code = ErrorCode::StaleData,
+                            .device = "stage",
+                            .tried = "pair a frame with the stage's gate",
+                            .seen = fmt::format("gate count {}", state->gate.count),
+                            .limit = fmt::format("{}", scan->job->gate_before + 1)},
+                      now);
+  }
+  scan->job->gate = *state;
+  join_exposure(now);
+}
+
+void Sequencer::Impl::on_frame(const Result<FrameSummary>& frame, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!frame) return job_failed(frame.error(), now);
+  scan->job->frame = *frame;
+  join_exposure(now);
+}
+
+void Sequencer::Impl::join_exposure(Instant now) {
+  Job& job = *scan->job;
+  if (!job.gate || !job.frame) return;
+  const Duration exposure = scan->chooser.rungs()[job.measurement->rung()];
+  const Duration beyond = std::max(Duration::zero(), now - job.asked - exposure);
+  job.time.expose += now - job.asked - beyond;
+  job.time.read += beyond;
+  scan->chooser.learn_frame_time(beyond);
+  const auto verdict =
+      job.measurement->add(reading_from(*job.frame, *job.gate, job.asked + exposure / 2), scan->chooser);
+  if (lamp_is_out(job.gate->gate, now)) return drop_job(now);
+  if (verdict == Measurement::Verdict::Saturated) {
+    return job_failed(Error{.code = ErrorCode::Saturated,
+                            .device = "detector",
+                            .tried = fmt::format("expose for {:.6f} s, the shortest", in_seconds(exposure)),
+                            .seen = fmt::format("{} pixels of the aperture at full scale", job.frame->region.saturated),
+                            .limit = "none"},
+                      now);
+  }
+  if (verdict == Measurement::Verdict::Done) return accept_job(now);
+  job.phase = Job::Phase::InPlace;
+}
+
+bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) {
+  const LampBand& band = config.instrument.lamp;
+  if (gate.monitor_mean >= band.low && gate.monitor_mean <= band.high) return false;
+  add_hold(HoldName::Lamp, "stage",
+           fmt::format("lamp monitor {:.4f}, limits {:.4f} to {:.4f}", gate.monitor_mean, band.low, band.high), now);
+  return true;
+}
+
+// ---- done ----
+
+void Sequencer::Impl::finish_times(Job& job, Instant now) {
+  job.time.idle = Duration::zero();
+  job.time.idle = std::max(Duration::zero(), now - job.started - job.time.total());
+}
+
+NewAttempt Sequencer::Impl::attempt_of(const Job& job, AttemptOutcome outcome, Instant now) const {
+  NewAttempt attempt{.scan = scan->id, .item = job.item, .outcome = outcome, .started = job.started};
+  Job timed = job;
+  finish_times(timed, now);
+  attempt.time = timed.time;
+  if (job.measurement) attempt.readings = job.measurement->readings();
+  return attempt;
+}
+
+void Sequencer::Impl::accept_job(Instant now) {
+  Job job = *std::exchange(scan->job, std::nullopt);
+  finish_times(job, now);
+  scan->spent += job.time;
+  job.kind == Job::Kind::Item ? accept_item(job, now) : accept_dark(job, now);
+}
+
+void Sequencer::Impl::accept_item(Job& job, Instant now) {
+  const NewAttempt attempt = attempt_of(job, AttemptOutcome::Accepted, now);
+  scan->note_rung(job.measurement->rung());
+  scan->most_frames = std::max(scan->most_frames, job.measurement->used_frames());
+  scan->items.accept(job.item, now);
+  scan->failures.erase(job.item);
+  scan->dark_owed = true;
+  ++scan->uncommitted;
+  (job.item.target == Target::Sample ? scan->sample_time : scan->reference_time).add(job.time.total());
+  commit({.at = now, .writes = {attempt}, .events = {event_attempt(attempt, *job.measurement)}},
+         {.done =
+              [this](const CommitReceipt&, Instant) {
+                if (scan) --scan->uncommitted;
+              },
+          .holds_exposures = true});
+}
+
+void Sequencer::Impl::accept_dark(Job& job, Instant now) {
+  const NewVisit visit{
+      .scan = scan->id, .time = job.time, .readings = job.measurement->readings(), .started = job.started};
+  scan->dark_time.add(job.time.total());
+  scan->last_dark = now;
+  scan->dark_owed = false;
+  scan->dark_failures = 0;
+  commit({.at = now, .writes = {visit}, .events = {event_dark_visit(visit)}},
+         {.done = [](const CommitReceipt&, Instant) {}, .holds_exposures = true});
+}
+
+// ---- not done ----
+
+void Sequencer::Impl::drop_job(Instant now) {
+  if (!scan->job) return;
+  disown_calls();
+  const Job job = *std::exchange(scan->job, std::nullopt);
+  if (job.kind != Job::Kind::Item || !job.measurement || job.measurement->readings().empty()) return;
+  const NewAttempt attempt = attempt_of(job, AttemptOutcome::Dropped, now);
+  scan->spent += attempt.time;
+  commit({.at = now, .writes = {attempt}, .events = {event_attempt(attempt, *job.measurement)}},
+         {.done = [](const CommitReceipt&, Instant) {}});
+}
+
+void Sequencer::Impl::job_failed(const Error& error, Instant now) {
+  disown_calls();
+  if (error.code == ErrorCode::Stopped || error.code == ErrorCode::StaleEpoch) stage_stopped = true;
+  const bool is_item = scan->job->kind == Job::Kind::Item;
+  if (is_item && reaction_to(error.code) != Reaction::Hold) return item_failed(error, now);
+  if (scan->job->kind == Job::Kind::Dark && reaction_to(error.code) != Reaction::Hold) return dark_failed(error, now);
+  drop_job(now);
+  scan->job.reset();
+  add_hold(hold_for(error.code), error.device.empty() ? kDaemon : error.device, describe(error), now);
+}
+
+// A scan without its dark is worth nothing: never skipped.
+void Sequencer::Impl::dark_failed(const Error& error, Instant now) {
+  scan->job.reset();
+  if (++scan->dark_failures <= scan->policy.item_retries) return;  // chosen again
+  add_hold(hold_for(error.code), error.device, "dark visit: " + describe(error), now);
+}
+
+void Sequencer::Impl::item_failed(const Error& error, Instant now) {
+  const Job job = *std::exchange(scan->job, std::nullopt);
+  NewAttempt attempt = attempt_of(job, AttemptOutcome::Failed, now);
+  attempt.error = error;
+  scan->spent += attempt.time;
+  ++scan->failed_attempts;
+  const Measurement nothing = Measurement::of_dark(0, 0, 1);
+  StoreTransaction transaction{
+      .at = now, .writes = {attempt}, .events = {event_attempt(attempt, job.measurement ? *job.measurement : nothing)}};
+  const Reaction reaction = reaction_to(error.code);
+  const int failures = ++scan->failures[job.item];
+  if (reaction != Reaction::GiveUpItem && failures <= scan->policy.item_retries) {
+    commit(std::move(transaction), {.done = [](const CommitReceipt&, Instant) {}});
+    return start_item(job.item, now);
+  }
+  if (reaction == Reaction::TryAgainThenHold) {
+    scan->failures.erase(job.item);  // the operator's resume gives it its tries again
+    commit(std::move(transaction), {.done = [](const CommitReceipt&, Instant) {}});
+    return add_hold(HoldName::Device, error.device, describe(error), now);
+  }
+  give_up_item(job.item, error, std::move(transaction), now);
+}
+
+void Sequencer::Impl::give_up_item(const ItemKey& item, const Error& error, StoreTransaction transaction, Instant now) {
+  const std::string reason = describe(error);
+  if (scan->policy.on_item_error == api::OnItemError::Skip) {
+    for (const ItemKey& gone : scan->items.skip(item)) {
+      const SkipItem skip{.scan = scan->id, .item = gone, .who = kDaemon, .reason = reason};
+      transaction.writes.emplace_back(skip);
+      transaction.events.push_back(event_skipped(skip));
+    }
+  }
+  commit(std::move(transaction), {.done = [](const CommitReceipt&, Instant) {}});
+  const std::string what = fmt::format("point {} ({}): {}", item.point, target_name(item.target), reason);
+  if (scan->policy.on_item_error == api::OnItemError::Hold) {
+    scan->failures.erase(item);
+    return add_hold(HoldName::Device, kDaemon, what, now);
+  }
+  if (scan->policy.on_item_error == api::OnItemError::Fail && !is_in_transition) {
+    transition(ScanEvent::Fail, now, kDaemon, what);
+  }
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,252 @@
+#include "daemon/sequencer/sequencer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "daemon/sequencer/failure_policy.h"
+#include "daemon/sequencer/scan_events.h"
+#include "daemon/sequencer/sequencer_impl.h"
+
+namespace gonio::daemon {
+
+Sequencer::Sequencer(SequencerConfig config, Instant /*now*/) : impl_(std::make_unique<Impl>(std::move(config))) {
+  impl_->load_from_store();
+}
+Sequencer::~Sequencer() = default;
+Sequencer::Sequencer(Sequencer&&) noexcept = default;
+Sequencer& Sequencer::operator=(Sequencer&&) noexcept = default;
+
+void Sequencer::on(const SequencerMessage& message, Instant now) {
+  std::visit([this, now](const auto& m) { impl_->on_message(m, now); }, message);
+  impl_->advance(now);
+}
+
+std::optional<Instant> Sequencer::step(Instant now) {
+  impl_->advance(now);
+  const auto& scan = impl_->scan;
+  const bool looks_again = scan && scan->state == ScanState::Preparing && !impl_->is_in_transition &&
+                           scan->preparation == ActiveScan::Preparation::LookAgain && impl_->channels_are_free();
+  if (!looks_again) return std::nullopt;
+  return scan->look_again_at;
+}
+
+std::vector<Request> Sequencer::take_requests() {
+  return std::exchange(impl_->requests, {});
+}
+std::vector<CommandReply> Sequencer::take_replies() {
+  return std::exchange(impl_->replies, {});
+}
+SequencerStatus Sequencer::status(Instant now) const {
+  return impl_->status(now);
+}
+
+// ---- channels ----
+
+void Sequencer::Impl::ask_stage(StageUse use, StageRequest request) {
+  stage_call = {++last_ticket, use};
+  std::visit([this](auto& r) { r.ticket = last_ticket; }, request);
+  requests.emplace_back(std::move(request));
+}
+
+void Sequencer::Impl::ask_detector(DetectorUse use, DetectorRequest request) {
+  detector_call = {++last_ticket, use};
+  std::visit([this](auto& r) { r.ticket = last_ticket; }, request);
+  requests.emplace_back(std::move(request));
+}
+
+void Sequencer::Impl::commit(StoreTransaction transaction, PendingCommit pending) {
+  commits.emplace(++last_ticket, std::move(pending));
+  requests.emplace_back(StoreRequest{Commit{.ticket = last_ticket, .transaction = std::move(transaction)}});
+}
+
+void Sequencer::Impl::load_from_store() {
+  load_call = ++last_ticket;
+  requests.emplace_back(StoreRequest{LoadUnfinished{.ticket = last_ticket}});
+}
+
+bool Sequencer::Impl::has_uncommitted_item() const {
+  return std::any_of(commits.begin(), commits.end(), [](const auto& c) { return c.second.holds_exposures; });
+}
+
+void Sequencer::Impl::disown_calls() {
+  // A command by hand gets its answer, whatever becomes of the scan.
+  const bool is_by_hand =
+      stage_call && (stage_call->use == StageUse::HandLook || stage_call->use == StageUse::HandDone);
+  if (stage_call && !is_by_hand) stage_call->use = StageUse::Dropped;
+  if (detector_call) detector_call->use = DetectorUse::Dropped;
+}
+
+// ---- answers ----
+
+void Sequencer::Impl::on_message(const Command& command, Instant now) {
+  run(command, now);
+}
+
+void Sequencer::Impl::note_stage(const drivers::StageState& state) {
+  stage = state;
+  if (state.halted) stage_stopped = true;
+}
+
+void Sequencer::Impl::on_message(const StageAnswer& answer, Instant now) {
+  if (!stage_call || stage_call->ticket != answer.ticket) return;
+  const StageUse use = stage_call->use;
+  stage_call.reset();
+  if (answer.state) note_stage(*answer.state);
+  switch (use) {
+    case StageUse::Look:
+      return on_look(answer.state, now);
+    case StageUse::Reset:
+      return on_prepared_step(answer.state, ActiveScan::Preparation::Look, now);
+    case StageUse::Home:
+      return on_prepared_step(answer.state, ActiveScan::Preparation::Verified, now);
+    case StageUse::Move:
+      return on_moved(answer.state, now);
+    case StageUse::Gate:
+      return on_gate(answer.state, now);
+    case StageUse::HandLook:
+      return on_hand_look(answer.state);
+    case StageUse::HandDone:
+      return on_hand_done(answer.state);
+    case StageUse::Dropped:
+    case StageUse::Shut:
+      return;
+  }
+}
+
+void Sequencer::Impl::on_message(const FrameAnswer& answer, Instant now) {
+  if (!detector_call || detector_call->ticket != answer.ticket) return;
+  const DetectorUse use = detector_call->use;
+  detector_call.reset();
+  if (use == DetectorUse::Frame) on_frame(answer.frame, now);
+}
+
+void Sequencer::Impl::on_message(const DetectorAnswer& answer, Instant now) {
+  if (!detector_call || detector_call->ticket != answer.ticket) return;
+  const DetectorUse use = detector_call->use;
+  detector_call.reset();
+  if (use != DetectorUse::Prepare || !scan) return;
+  if (answer.detector) {
+    scan->preparation = ActiveScan::Preparation::Look;
+  } else {
+    add_hold(hold_for(answer.detector.error().code), "detector", describe(answer.detector.error()), now);
+  }
+}
+
+void Sequencer::Impl::on_message(const CommitAnswer& answer, Instant now) {
+  const auto found = commits.find(answer.ticket);
+  if (found == commits.end()) return;
+  const PendingCommit pending = std::move(found->second);
+  commits.erase(found);
+  if (!answer.receipt) return store_failed(answer.receipt.error(), pending.reply_failure_to);
+  // After a failure nothing in memory is believed any more; what did get written is found by the reload.
+  if (store_error) return store_failed(*store_error, pending.reply_failure_to);
+  pending.done(*answer.receipt, now);
+}
+
+void Sequencer::Impl::store_failed(const Error& error, std::optional<CommandId> command) {
+  if (command) reply(*command, failure(error));
+  for (const Command& waits : std::exchange(waiting, {})) reply(waits.id, failure(error));
+  if (store_error) return;
+  store_error = error;
+  is_in_transition = false;
+  if (!scan) return;
+  scan->job.reset();
+  disown_calls();
+  scan->holds.push_back(Hold{.name = HoldName::Disk, .owner = "store", .reason = describe(error)});
+}
+
+void Sequencer::Impl::on_message(const UnfinishedAnswer& answer, Instant /*now*/) {
+  if (load_call != answer.ticket) return;
+  load_call.reset();
+  const std::optional<CommandId> command = std::exchange(resume_command, std::nullopt);
+  if (!answer.scans) {
+    store_error = answer.scans.error();
+    if (command) reply(*command, failure(answer.scans.error()));
+    return;
+  }
+  store_error.reset();
+  scan.reset();
+  queue.clear();
+  for (const UnfinishedScan& stored : *answer.scans) {
+    ActiveScan unfinished(stored, config.instrument);
+    unfinished.is_found = unfinished.state != ScanState::Queued;
+    if (unfinished.is_found) {
+      queue.push_front(std::move(unfinished));
+    } else {
+      queue.push_back(std::move(unfinished));
+    }
+  }
+  if (command) reply(*command, CommandDone{.scan = queue.empty() ? 0 : queue.front().id});
+}
+
+void Sequencer::Impl::on_message(const StopHappened& stop, Instant now) {
+  epoch = std::max(epoch, stop.epoch);
+  stage_stopped = true;
+  if (store_error || load_call) return;  // halted all the same; the stage's own latch tells of it later
+  const bool is_under_way = scan && scan->state != ScanState::Queued && !is_over(scan->state);
+  commit({.at = now,
+          .writes = {AuditEntry{.who = stop.who, .action = "stop"}},
+          .events = {event_stop(is_under_way ? scan->id : 0, stop.who, stop.epoch)}},
+         {.done = [](const CommitReceipt&, Instant) {}});
+  if (!is_under_way) return;
+  drop_job(now);
+  add_hold(HoldName::Operator, stop.who, "STOP: reset the stage, then resume", now);
+}
+
+// ---- what is shown ----
+
+std::string_view Sequencer::Impl::doing() const {
+  if (by_hand) return "moved by hand";
+  if (!scan) return "idle";
+  if (scan->state != ScanState::Running && scan->state != ScanState::Finishing) return scan_state_name(scan->state);
+  if (!scan->job) return "committing";
+  switch (scan->job->phase) {
+    case Job::Phase::ToMove:
+    case Job::Phase::Moving:
+      return "moving";
+    case Job::Phase::InPlace:
+      return "committing";
+    case Job::Phase::Exposing:
+      return scan->job->kind == Job::Kind::Dark ? "exposing the dark" : "exposing";
+  }
+  return "idle";
+}
+
+Progress Sequencer::Impl::progress() const {
+  Progress p{.scan = scan->id,
+             .name = scan->name,
+             .state = scan->state,
+             .holds = scan->holds,
+             .points = static_cast<std::int64_t>(scan->points.size()),
+             .merged = scan->merged,
+             .items = scan->items.total(),
+             .accepted = scan->items.accepted() - scan->uncommitted,
+             .skipped = scan->items.skipped(),
+             .failed_attempts = scan->failed_attempts,
+             .spent = scan->spent};
+  p.blocked = p.points - p.items / 2;
+  if (scan->job && scan->job->kind == Job::Kind::Item) p.in_hand = scan->job->item;
+  if (scan->sample_time.count() == 0 && scan->reference_time.count() == 0) return p;
+  // Until one of the targets was measured, the other stands for it.
+  const auto& sample = scan->sample_time.count() > 0 ? scan->sample_time : scan->reference_time;
+  const auto& reference = scan->reference_time.count() > 0 ? scan->reference_time : scan->sample_time;
+  const Remaining samples = remaining(sample, scan->items.open(calibration::Target::Sample));
+  const Remaining references = remaining(reference, scan->items.open(calibration::Target::Reference));
+  const double items_s = samples.time_s + references.time_s;
+  const double every_s = in_seconds(scan->policy.dark_every);
+  const auto visits = static_cast<std::int64_t>(every_s > 0.0 ? items_s / every_s : 0.0) + 1;
+  const Remaining darks = remaining(scan->dark_time, visits);
+  p.remaining = seconds(items_s + darks.time_s);
+  p.u_remaining = seconds(std::sqrt(samples.variance_s2 + references.variance_s2 + darks.variance_s2));
+  return p;
+}
+
+SequencerStatus Sequencer::Impl::status(Instant /*now*/) const {
+  SequencerStatus s{.doing = std::string(doing()), .stage_stopped = stage_stopped, .store_error = store_error};
+  if (scan) s.active = progress();
+  for (const ActiveScan& waits : queue) s.queued.push_back(waits.id);
+  return s;
+}
+
+}  // namespace gonio::daemon

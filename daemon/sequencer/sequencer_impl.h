@@ -1,0 +1,144 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/sequencer/active_scan.h"
+#include "daemon/sequencer/scan_machine.h"
+#include "daemon/sequencer/sequencer.h"
+
+namespace gonio::daemon {
+
+/// The inside of the sequencer, in four sources: sequencer.cpp (channels and answers), scan_life.cpp (states and what
+/// comes next), scan_jobs.cpp (moves, exposures, results), scan_commands.cpp (what clients ask).
+struct Sequencer::Impl {
+  explicit Impl(SequencerConfig configuration) : config(std::move(configuration)), epoch(config.epoch) {}
+
+  // ---- channels (sequencer.cpp) ----
+  enum class StageUse : std::uint8_t { Dropped, Look, Home, Reset, Move, Gate, Shut, HandLook, HandDone };
+  enum class DetectorUse : std::uint8_t { Dropped, Prepare, Frame };
+  template <class Use>
+  struct Call {
+    Ticket ticket = 0;
+    Use use{};
+  };
+  struct PendingCommit {
+    std::function<void(const CommitReceipt&, Instant)> done;
+    std::optional<CommandId> reply_failure_to;
+    bool holds_exposures = false;  ///< an item or a visit: the next exposure waits for it
+  };
+
+  void ask_stage(StageUse use, StageRequest request);
+  void ask_detector(DetectorUse use, DetectorRequest request);
+  void commit(StoreTransaction transaction, PendingCommit pending);
+  void load_from_store();
+  void reply(CommandId id, Result<CommandDone> result) { replies.push_back({id, std::move(result)}); }
+  [[nodiscard]] bool channels_are_free() const { return !stage_call && !detector_call; }
+  [[nodiscard]] bool has_uncommitted_item() const;
+  /// Open calls are awaited, their answers then thrown away.
+  void disown_calls();
+
+  void on_message(const Command& command, Instant now);
+  void on_message(const StageAnswer& answer, Instant now);
+  void on_message(const FrameAnswer& answer, Instant now);
+  void on_message(const DetectorAnswer& answer, Instant now);
+  void on_message(const CommitAnswer& answer, Instant now);
+  void on_message(const UnfinishedAnswer& answer, Instant now);
+  void on_message(const StopHappened& stop, Instant now);
+  void note_stage(const drivers::StageState& state);
+  void store_failed(const Error& error, std::optional<CommandId> command);
+  [[nodiscard]] SequencerStatus status(Instant now) const;
+  [[nodiscard]] Progress progress() const;
+  [[nodiscard]] std::string_view doing() const;
+
+  // ---- life (scan_life.cpp) ----
+  /// What comes next, after anything happened.
+  void advance(Instant now);
+  void activate_next(Instant now);
+  void advance_found(Instant now);
+  void advance_preparing(Instant now);
+  void advance_measuring(Instant now);
+  void choose_job(Instant now);
+  void transition(ScanEvent event, Instant now, const std::string& who, const std::string& reason,
+                  std::optional<CommandId> command = std::nullopt, std::vector<StoreWrite> more = {},
+                  std::vector<NewEvent> more_events = {});
+  void entered(ScanState state, Instant now);
+  void add_hold(HoldName name, const std::string& owner, const std::string& reason, Instant now,
+                std::optional<CommandId> command = std::nullopt);
+  void on_look(const Result<drivers::StageState>& state, Instant now);
+  void decide_after_restart(Instant now);
+  void verify_stage(const drivers::StageState& state, Instant now);
+  void on_prepared_step(const Result<drivers::StageState>& state, ActiveScan::Preparation next, Instant now);
+  void look_again(Duration patience, const std::string& what, Instant now);
+
+  // ---- jobs (scan_jobs.cpp) ----
+  void start_item(const ItemKey& item, Instant now);
+  void start_dark(Instant now);
+  void start_park(Instant now);
+  void drive_job(Instant now);
+  void begin_exposure(Instant now);
+  void on_moved(const Result<drivers::StageState>& state, Instant now);
+  void on_gate(const Result<drivers::StageState>& state, Instant now);
+  void on_frame(const Result<FrameSummary>& frame, Instant now);
+  void join_exposure(Instant now);
+  [[nodiscard]] bool lamp_is_out(const drivers::GateRecord& gate, Instant now);
+  void accept_job(Instant now);
+  void accept_item(Job& job, Instant now);
+  void accept_dark(Job& job, Instant now);
+  void job_failed(const Error& error, Instant now);
+  void dark_failed(const Error& error, Instant now);
+  void item_failed(const Error& error, Instant now);
+  void give_up_item(const ItemKey& item, const Error& error, StoreTransaction transaction, Instant now);
+  /// Gives up what is in hand without a decision; exposures made are recorded. Open calls are awaited and dropped.
+  void drop_job(Instant now);
+  [[nodiscard]] NewAttempt attempt_of(const Job& job, AttemptOutcome outcome, Instant now) const;
+  static void finish_times(Job& job, Instant now);
+
+  // ---- commands (scan_commands.cpp) ----
+  void run(const Command& command, Instant now);
+  void run_verb(const Command& c, const SubmitScan& submit, Instant now);
+  void run_verb(const Command& c, const PauseScan& pause, Instant now);
+  void run_verb(const Command& c, const ResumeScan& resume, Instant now);
+  void run_verb(const Command& c, const FinishScan& finish, Instant now);
+  void run_verb(const Command& c, const AbortScan& abort, Instant now);
+  void run_verb(const Command& c, const SkipItemInHand& skip, Instant now);
+  void run_verb(const Command& c, const MoveStage& move, Instant now);
+  void run_verb(const Command& c, const HomeStage& home, Instant now);
+  void run_verb(const Command& c, const ClearStage& clear, Instant now);
+  void take_by_hand(const Command& c);
+  void start_by_hand();
+  void on_hand_look(const Result<drivers::StageState>& state);
+  void on_hand_done(const Result<drivers::StageState>& state);
+  void end_by_hand(Result<CommandDone> result);
+  [[nodiscard]] bool is_active(const Command& c, ScanId scan);
+  void abort_queued(const Command& c, ScanId scan, const std::string& reason, Instant now);
+  [[nodiscard]] bool refuse_while_stopped(const Command& c);
+
+  SequencerConfig config;
+  drivers::Epoch epoch;
+  std::vector<Request> requests;
+  std::vector<CommandReply> replies;
+  Ticket last_ticket = 0;
+  std::optional<Call<StageUse>> stage_call;
+  std::optional<Call<DetectorUse>> detector_call;
+  std::map<Ticket, PendingCommit> commits;
+  std::optional<Ticket> load_call;
+  std::optional<drivers::StageState> stage;  ///< as last seen
+  bool stage_stopped = false;
+  bool shutters_to_close = false;  ///< after an abort
+  std::optional<Error> store_error;
+  std::string resumed_by;  ///< who resumed after a store error: overrides the restart policy once
+  std::optional<CommandId> resume_command;
+  std::deque<ActiveScan> queue;    ///< behind the active one
+  std::optional<ActiveScan> scan;  ///< the active one
+  bool is_in_transition = false;   ///< written, not yet committed: nothing is begun meanwhile
+  std::deque<Command> waiting;     ///< commands that came meanwhile
+  std::optional<Command> by_hand;  ///< the stage command in work
+  bool by_hand_is_asked = false;   ///< its first look is out
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,88 @@
+#include "daemon/sequencer/scan_items.h"
+
+#include <gtest/gtest.h>
+
+namespace gonio::daemon {
+namespace {
+
+using calibration::Target;
+using std::chrono::seconds;
+
+const Instant kStart{seconds(1000)};
+
+// Accepts `count` items, one every `apart`; what they were.
+std::vector<ItemKey> take(ScanItems& items, int count, Duration apart = seconds(1), Instant from = kStart) {
+  std::vector<ItemKey> taken;
+  for (int k = 0; k < count; ++k) {
+    const auto next = items.next(from + k * apart);
+    if (!next) break;
+    items.accept(*next, from + k * apart);
+    taken.push_back(*next);
+  }
+  return taken;
+}
+
+TEST(ScanItems, ABlockOfSamplesIsFollowedByItsReferencesLastFirst) {
+  ScanItems items(3, {2, 0, 1}, seconds(100), {}, {});
+
+  const auto taken = take(items, 99);
+
+  EXPECT_EQ(taken, (std::vector<ItemKey>{{2, Target::Sample},
+                                         {0, Target::Sample},
+                                         {1, Target::Sample},
+                                         {1, Target::Reference},
+                                         {0, Target::Reference},
+                                         {2, Target::Reference}}));
+  EXPECT_EQ(items.accepted(), 6);
+}
+
+TEST(ScanItems, PartnersLieWithinTheBlocksTime) {
+  std::vector<std::int32_t> order(40);
+  for (int k = 0; k < 40; ++k) order[static_cast<std::size_t>(k)] = k;
+  ScanItems items(40, order, seconds(20), {}, {});
+  std::vector<Instant> sample_at(40);
+  Duration longest{};
+
+  for (int k = 0; k < 80; ++k) {
+    const Instant now = kStart + k * seconds(1);
+    const auto next = items.next(now);
+    ASSERT_TRUE(next);
+    items.accept(*next, now);
+    const auto p = static_cast<std::size_t>(next->point);
+    if (next->target == Target::Sample) sample_at[p] = now;
+    if (next->target == Target::Reference) longest = std::max(longest, now - sample_at[p]);
+  }
+
+  EXPECT_LE(longest, seconds(20));
+  EXPECT_FALSE(items.next(kStart + seconds(80)));
+}
+
+TEST(ScanItems, ARestartClosesTheOpenBlockAndGoesOnWithTheNextUnmeasured) {
+  ScanItems items(4, {0, 1, 2, 3}, seconds(100), {{0, Target::Sample}, {1, Target::Sample}, {1, Target::Reference}},
+                  {});
+
+  const auto taken = take(items, 2);
+
+  EXPECT_EQ(taken, (std::vector<ItemKey>{{0, Target::Reference}, {2, Target::Sample}}));
+}
+
+TEST(ScanItems, SkippingASampleSkipsItsPartner) {
+  ScanItems items(2, {0, 1}, seconds(100), {}, {});
+
+  const auto gone = items.skip({0, Target::Sample});
+
+  EXPECT_EQ(gone, (std::vector<ItemKey>{{0, Target::Sample}, {0, Target::Reference}}));
+  EXPECT_EQ(take(items, 9).size(), 2U);
+  EXPECT_EQ(items.skipped(), 2);
+  EXPECT_EQ(items.open(Target::Sample), 0);
+}
+
+TEST(ScanItems, SkippingAReferenceSkipsItAlone) {
+  ScanItems items(1, {0}, seconds(100), {{0, Target::Sample}}, {});
+
+  EXPECT_EQ(items.skip({0, Target::Reference}).size(), 1U);
+  EXPECT_FALSE(items.next(kStart));
+}
+
+}  // namespace
+}  // namespace gonio::daemon

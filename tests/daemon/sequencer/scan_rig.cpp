@@ -1,0 +1,272 @@
+#include "tests/daemon/sequencer/scan_rig.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "daemon/planner/estimate.h"
+
+namespace gonio::daemon::test {
+
+namespace {
+
+using stage::Axis;
+using std::chrono::milliseconds;
+
+constexpr Duration kWire = std::chrono::microseconds(200);
+
+}  // namespace
+
+ScanRig::ScanRig(Instrument instrument) : instrument_(std::move(instrument)) {
+  world.stage.homed = true;
+  world.stage.boot_counter = 3;
+  start();
+}
+
+void ScanRig::start() {
+  auto writer = StoreWriter::open({.path = path_, .boot_id = "boot", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+  writer_ = std::move(*writer);
+  store_.emplace(*writer_);
+  sequencer_.emplace(SequencerConfig{.instrument = instrument_}, clock_.now());
+  collect();
+}
+
+void ScanRig::kill() {
+  agenda_.clear();
+  watched_.reset();
+  open_move_.reset();
+  sequencer_.reset();
+  store_.reset();
+  writer_.reset();
+}
+
+void ScanRig::after(Duration delay, Action action) {
+  agenda_.emplace(clock_.now() + delay, std::move(action));
+}
+
+void ScanRig::tell(Duration delay, SequencerMessage message) {
+  after(delay, [this, message = std::move(message)] { sequencer_->on(message, clock_.now()); });
+}
+
+void ScanRig::collect() {
+  for (CommandReply& reply : sequencer_->take_replies()) replies.push_back(std::move(reply));
+  for (Request& request : sequencer_->take_requests()) {
+    after(Duration::zero(), [this, request = std::move(request)] { execute(request); });
+  }
+}
+
+bool ScanRig::step() {
+  const std::optional<Instant> wake = sequencer_->step(clock_.now());
+  collect();
+  if (agenda_.empty()) {
+    if (!wake) return false;
+    clock_.advance_to(*wake);
+    return true;
+  }
+  if (wake && *wake < agenda_.begin()->first) {
+    clock_.advance_to(*wake);
+    return true;
+  }
+  auto next = agenda_.extract(agenda_.begin());
+  clock_.advance_to(next.key());
+  next.mapped()();
+  collect();
+  return true;
+}
+
+bool ScanRig::run_until(const std::function<bool()>& reached) {
+  constexpr int kMostSteps = 100'000;
+  for (int steps = 0; steps < kMostSteps; ++steps) {
+    if (reached()) return true;
+    if (!step()) return reached();
+  }
+  ADD_FAILURE() << "no end after " << kMostSteps << " steps; doing: " << status().doing;
+  return false;
+}
+
+CommandId ScanRig::command(Verb verb, const std::string& who) {
+  sequencer_->on(Command{.id = ++last_command_, .who = who, .verb = std::move(verb)}, clock_.now());
+  collect();
+  return last_command_;
+}
+
+const CommandReply* ScanRig::reply_to(CommandId id) const {
+  const auto found = std::find_if(replies.begin(), replies.end(), [id](const auto& r) { return r.id == id; });
+  return found == replies.end() ? nullptr : &*found;
+}
+
+ScanId ScanRig::submit(const api::Plan& plan) {
+  const CommandId id = command(SubmitScan{new_scan(plan)});
+  EXPECT_TRUE(run_until([&] { return reply_to(id) != nullptr; }));
+  const auto& result = reply_to(id)->result;
+  EXPECT_TRUE(result) << describe(result.error());
+  return result ? result->scan : 0;
+}
+
+void ScanRig::stop() {
+  world.stage.halted = true;
+  ++world.stage.epoch;
+  world.moving_until = std::min(world.moving_until, clock_.now());
+  if (open_move_) {
+    // The answer of the move that was under way is replaced: the stage did not arrive.
+    tell(kWire, StageAnswer{.ticket = *std::exchange(open_move_, std::nullopt),
+                            .state = failure(Error{.code = ErrorCode::Stopped, .device = "stage", .tried = "move"})});
+  }
+  sequencer_->on(StopHappened{.epoch = world.stage.epoch, .who = "uid:7"}, clock_.now());
+  collect();
+}
+
+ScanInfo ScanRig::info(ScanId id) {
+  auto reader = StoreReader::open(path_);
+  if (!reader) return {};
+  return (*reader)->scan(id).value_or(ScanInfo{});
+}
+
+ScanState ScanRig::state_of(ScanId id) {
+  return info(id).state;
+}
+
+std::int64_t ScanRig::count(const std::string& query) {
+  SQLite::Database database(path_, SQLite::OPEN_READONLY);
+  return database.execAndGet(query).getInt64();
+}
+
+// ---- the other side ----
+
+void ScanRig::execute(const Request& request) {
+  if (const auto* to_stage = std::get_if<StageRequest>(&request)) return execute_stage(*to_stage);
+  if (const auto* to_detector = std::get_if<DetectorRequest>(&request)) return execute_detector(*to_detector);
+  execute_store(std::get<StoreRequest>(request));
+}
+
+void ScanRig::execute_store(const StoreRequest& request) {
+  const auto* commit = std::get_if<Commit>(&request);
+  if (commit != nullptr && refuse_commits) {
+    const Error full{.code = ErrorCode::DiskFull, .device = "store", .tried = "commit", .seen = "no space"};
+    return tell(kWire, CommitAnswer{.ticket = commit->ticket, .receipt = failure(full)});
+  }
+  const StoreActor::Answer answer = store_->on(request, clock_.now());
+  if (const auto* committed = std::get_if<CommitAnswer>(&answer)) {
+    if (committed->receipt) {
+      events.insert(events.end(), committed->receipt->events.begin(), committed->receipt->events.end());
+    }
+    return tell(milliseconds(1), *committed);
+  }
+  tell(milliseconds(1), std::get<UnfinishedAnswer>(answer));
+}
+
+drivers::StageState ScanRig::look() {
+  world.stage.at = clock_.now();
+  world.stage.moving = clock_.now() < world.moving_until;
+  world.stage.gate.open = clock_.now() < world.gate_open_until;
+  return world.stage;
+}
+
+void ScanRig::execute_stage(const StageRequest& request) {
+  if (const auto* to = std::get_if<MoveTo>(&request)) return move(*to);
+  if (const auto* watch = std::get_if<WatchGate>(&request)) {
+    EXPECT_FALSE(watched_) << "one stage request at a time";
+    watched_ = *watch;
+    return;
+  }
+  if (const auto* homing = std::get_if<Home>(&request)) {
+    world.stage.homed = true;
+    return after(std::chrono::seconds(3), [this, ticket = homing->ticket] {
+      sequencer_->on(StageAnswer{.ticket = ticket, .state = look()}, clock_.now());
+    });
+  }
+  if (const auto* reset = std::get_if<ResetStage>(&request)) {
+    if (reset->epoch >= world.stage.epoch) {
+      world.stage.halted = false;
+      world.stage.heartbeat_tripped = false;
+    }
+    return tell(kWire, StageAnswer{.ticket = reset->ticket, .state = look()});
+  }
+  tell(kWire, StageAnswer{.ticket = std::get<LookAtStage>(request).ticket, .state = look()});
+}
+
+void ScanRig::move(const MoveTo& to) {
+  const auto refuse = [&](ErrorCode code, std::string seen) {
+    tell(kWire, StageAnswer{.ticket = to.ticket,
+                            .state = failure(Error{.code = code, .device = "stage", .tried = "move", .seen = seen})});
+  };
+  if (const auto error = world.move_error(to)) return refuse(error->code, error->seen);
+  const bool has_axes = std::any_of(to.target.begin(), to.target.end(), [](const auto& t) { return t.has_value(); });
+  if (has_axes && world.stage.halted) return refuse(ErrorCode::Stopped, "halted");
+  if (has_axes && to.epoch < world.stage.epoch) return refuse(ErrorCode::StaleEpoch, "epoch");
+  if (has_axes && look().moving) return refuse(ErrorCode::DeviceRefused, "already moving");
+  if (has_axes && !world.stage.homed) return refuse(ErrorCode::NotHomed, "not homed");
+  if (to.source_shutter_open) {
+    world.stage.source_shutter = *to.source_shutter_open ? stage::ShutterState::Open : stage::ShutterState::Closed;
+  }
+  if (to.detector_shutter_open) {
+    world.stage.detector_shutter = *to.detector_shutter_open ? stage::ShutterState::Open : stage::ShutterState::Closed;
+  }
+  stage::PerAxis<double> from{};
+  for (std::size_t a = 0; a < from.size(); ++a) from[a] = world.stage.axes[a].position;
+  const StepTime time = step_time(instrument_, from, to.target);
+  for (std::size_t a = 0; a < from.size(); ++a) world.stage.axes[a].position = to.target[a].value_or(from[a]);
+  world.moving_until = clock_.now() + time.move;
+  open_move_ = to.ticket;
+  after(time.move + time.settle + kWire, [this, ticket = to.ticket] {
+    if (open_move_ != ticket) return;  // stopped meanwhile
+    open_move_.reset();
+    sequencer_->on(StageAnswer{.ticket = ticket, .state = look()}, clock_.now());
+  });
+}
+
+void ScanRig::execute_detector(const DetectorRequest& request) {
+  if (const auto* take = std::get_if<TakeFrame>(&request)) return take_frame(*take);
+  const Ticket ticket = std::get<PrepareDetector>(request).ticket;
+  if (const auto error = world.camera_open_error()) return tell(kWire, DetectorAnswer{ticket, failure(*error)});
+  tell(kWire, DetectorAnswer{ticket, drivers::DetectorIdentity{.vendor = "test"}});
+}
+
+FrameSummary ScanRig::frame_of(const drivers::ExposureSettings& settings) {
+  const double theta_r = world.stage.axes[stage::index_of(Axis::ThetaR)].position;
+  const double carriage = world.stage.axes[stage::index_of(Axis::Carriage)].position;
+  const bool is_reference = carriage > 60.0;
+  const bool is_lit = world.stage.detector_shutter == stage::ShutterState::Open;
+  const double t = in_seconds(settings.exposure);
+  const double level = world.dark_dn + (is_lit ? world.rate_dn_per_s(theta_r, is_reference) * t : 0.0);
+  if (is_lit) {
+    const auto key = static_cast<std::int32_t>(std::lround(theta_r));
+    ++world.exposed_at[{key, is_reference ? calibration::Target::Reference : calibration::Target::Sample}];
+  }
+  FrameSummary frame;
+  frame.region = {.n = 450, .mean = std::min(level, 4095.0), .m2 = 4.0, .saturated = level > 4095.0 ? 450U : 0U};
+  frame.settings = settings;
+  frame.frame_id = static_cast<std::uint64_t>(world.exposures);
+  return frame;
+}
+
+void ScanRig::take_frame(const TakeFrame& take) {
+  if (const auto error = world.frame_error()) {
+    tell(milliseconds(100), FrameAnswer{take.ticket, failure(*error)});
+    if (!watched_) return;
+    const Error late{.code = ErrorCode::TimedOut, .device = "stage", .tried = "watch the gate"};
+    return tell(milliseconds(500), StageAnswer{std::exchange(watched_, std::nullopt)->ticket, failure(late)});
+  }
+  EXPECT_TRUE(watched_) << "a frame without its gate";
+  EXPECT_GE(clock_.now(), world.gate_open_until) << "an exposure within an exposure";
+  ++world.exposures;
+  ++world.stage.gate.count;
+  world.stage.gate.monitor_mean = world.monitor;
+  world.stage.gate.monitor_samples = 10;
+  for (std::size_t a = 0; a < stage::kAxisCount; ++a) {
+    const auto counts = static_cast<std::int32_t>(std::lround(world.stage.axes[a].position * 10'000.0));
+    world.stage.gate.open_counts[a] = counts;
+    world.stage.gate.close_counts[a] = counts;
+  }
+  world.gate_open_until = clock_.now() + take.settings.exposure;
+  tell(take.settings.exposure + milliseconds(2), FrameAnswer{take.ticket, frame_of(take.settings)});
+  after(take.settings.exposure + milliseconds(1), [this, watch = *std::exchange(watched_, std::nullopt)] {
+    sequencer_->on(StageAnswer{.ticket = watch.ticket, .state = look()}, clock_.now());
+  });
+}
+
+}  // namespace gonio::daemon::test

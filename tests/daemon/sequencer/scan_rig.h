@@ -1,0 +1,96 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "daemon/sequencer/sequencer.h"
+#include "daemon/store/store_actor.h"
+#include "daemon/store/store_reader.h"
+#include "tests/daemon/support/scan_records.h"
+
+namespace gonio::daemon::test {
+
+/// The instrument as seen through its answers: stage and camera scripted by hand, not by drivers. It outlives the
+/// daemon.
+struct ScriptedInstrument {
+  drivers::StageState stage;
+  Instant moving_until{};
+  Instant gate_open_until{};
+  int exposures = 0;                  ///< since power-up
+  std::map<ItemKey, int> exposed_at;  ///< lit frames by what was in view (point by theta_r, see ScanRig)
+  double dark_dn = 100.0;
+  std::function<double(double theta_r_deg, bool is_reference)> rate_dn_per_s = [](double, bool) { return 300'000.0; };
+  std::function<std::optional<Error>(const MoveTo&)> move_error = [](const MoveTo&) { return std::nullopt; };
+  std::function<std::optional<Error>()> frame_error = [] { return std::nullopt; };
+  std::function<std::optional<Error>()> camera_open_error = [] { return std::nullopt; };
+  double monitor = 1.0;
+};
+
+/// Sequencer, real store and scripted instrument on a manual clock. Each request executed and each answer delivered is
+/// one step, so that a test can kill the daemon between any two.
+class ScanRig {
+ public:
+  explicit ScanRig(Instrument instrument = bench_instrument());
+
+  ScriptedInstrument world;
+  std::vector<CommandReply> replies;
+  std::vector<EventRecord> events;  ///< as published: in order
+  bool refuse_commits = false;      ///< DiskFull for all that follow
+
+  /// One step; false when nothing is left to do.
+  bool step();
+  /// Steps until `reached` or nothing is left; false in the latter case, and after 100 000 steps.
+  bool run_until(const std::function<bool()>& reached);
+  bool run_to_rest() {
+    return run_until([] { return false; });
+  }
+  /// The daemon is gone at once: what was under way between its parts is lost. The instrument goes on.
+  void kill();
+  void start();
+
+  CommandId command(Verb verb, const std::string& who = "uid:1000");
+  [[nodiscard]] const CommandReply* reply_to(CommandId id) const;
+  ScanId submit(const api::Plan& plan);
+  /// STOP as the halt path does it: the stage first, then the word.
+  void stop();
+
+  [[nodiscard]] SequencerStatus status() const { return sequencer_->status(clock_.now()); }
+  [[nodiscard]] ScanState state_of(ScanId id);
+  [[nodiscard]] ScanInfo info(ScanId id);
+  [[nodiscard]] std::int64_t count(const std::string& query);
+  [[nodiscard]] const std::string& store_path() const { return path_; }
+  [[nodiscard]] ManualClock& clock() { return clock_; }
+
+ private:
+  using Action = std::function<void()>;
+  void after(Duration delay, Action action);
+  void tell(Duration delay, SequencerMessage message);
+  void collect();
+  void execute(const Request& request);
+  void execute_stage(const StageRequest& request);
+  void execute_detector(const DetectorRequest& request);
+  void execute_store(const StoreRequest& request);
+  void move(const MoveTo& move);
+  void take_frame(const TakeFrame& take);
+  [[nodiscard]] drivers::StageState look();
+  [[nodiscard]] FrameSummary frame_of(const drivers::ExposureSettings& settings);
+
+  Instrument instrument_;
+  ScratchFolder folder_;
+  std::string path_ = folder_.file("store.sqlite");
+  ManualClock clock_;
+  std::unique_ptr<StoreWriter> writer_;
+  std::optional<StoreActor> store_;
+  std::optional<Sequencer> sequencer_;
+  std::multimap<Instant, Action> agenda_;
+  std::optional<WatchGate> watched_;
+  std::optional<Ticket> open_move_;
+  CommandId last_command_ = 0;
+};
+
+}  // namespace gonio::daemon::test
