@@ -27,7 +27,8 @@ class ModbusLink {
                                                     std::uint16_t read_first, std::span<std::uint16_t> into) = 0;
   /// Drops whatever the line may still hold: for a reply that came in step but was not the one asked for.
   virtual void resync() = 0;
-  /// Makes a call in progress fail at once with Unreachable, and does nothing else. Threads: any.
+  /// Breaks the connection: a call in progress fails at once with Unreachable, and without one the next call does.
+  /// Threads: any.
   virtual void interrupt() = 0;
 };
 
