@@ -95,7 +95,8 @@ class HaltLine {
   /// `timeout` of zero ends the watch. Wall time.
   [[nodiscard]] virtual Result<void> watch_heartbeat(Duration timeout) = 0;
   [[nodiscard]] virtual Result<void> beat() = 0;
-  /// Makes a `beat` or `watch_heartbeat` in progress give up at once, so that a halt need not wait for it. Threads: any.
+  /// Makes a `beat` or `watch_heartbeat` in progress give up at once, so that a halt need not wait for it. Threads:
+  /// any.
   virtual void interrupt() = 0;
 };
 
