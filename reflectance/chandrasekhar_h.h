@@ -27,8 +27,8 @@ class ChandrasekharH {
 
  private:
   static constexpr int kOctaves = 40;
-  static constexpr int kDegree =
-      20;  // the singularity at mu = 0 lies 3 half-widths from an octave's middle: 5.8^-20 = 5e-16
+  // The singularity at mu = 0 lies 3 half-widths from the middle of an octave: 5.8^-20 = 5e-16.
+  static constexpr int kDegree = 20;
   using Octave = std::array<double, kDegree + 1>;  // powers of t in [-1, 1]
 
   // In two interleaved chains, which a processor follows at once.

@@ -18,6 +18,9 @@ Integral smooth_part(const Surface& surface, const Direction& i, double toleranc
     case Feature::Smooth:
       break;
   }
+  // Close to the horizon 1/(mu_i + mu_r) and its like bend within mu_i of it: too sharp for Gauss.
+  constexpr double kGrazing = 0.03;
+  if (i.mu() < kGrazing) return polar_integral(surface, i, Direction(), tolerance);
   const auto f = [&](const Direction& r) { return in_per_steradian(surface.eval(i, r)); };
   return integrate_hemisphere(f, tolerance, RingSpacing::SqrtMu);
 }

@@ -13,10 +13,9 @@ struct FresnelReflectance {
 
 /// Fresnel's reflectances of a clear, flat interface; `n` is the index of the far side over that of the side the light
 /// comes from: 1.34 from air into water, 1/1.34 from water into air. n > 0, finite (asserted). In the cosine form
-///   r_s = (1 - n^2) / (c + n t)^2,  r_p = (n^2 - 1)(c^2 - s^2/n^2) / (n c + t)^2,  t^2 = 1 - s^2/n^2 (cosine of the
-///   refracted),
-/// whose numerators do not cancel, at normal incidence and n near 1 included. Total reflection is 1 exactly.
-/// `cos_theta`, `sin_theta` of the angle of incidence, in [0, 1].
+///   r_s = (1 - n^2) / (c + n t)^2,  r_p = (n^2 - 1)(c^2 - s^2/n^2) / (n c + t)^2,  t^2 = 1 - s^2/n^2,
+/// t the cosine of the refracted angle, whose numerators do not cancel, at normal incidence and n near 1 included.
+/// Total reflection is 1 exactly. `cos_theta`, `sin_theta` of the angle of incidence, in [0, 1].
 [[nodiscard]] FresnelReflectance fresnel(double cos_theta, double sin_theta, double n);
 /// As above, theta in [0, 90 deg] (asserted); t^2 from sin(tc - theta) sin(tc + theta) towards the critical angle tc.
 [[nodiscard]] FresnelReflectance fresnel(Angle theta, double n);

@@ -19,9 +19,8 @@ enum class Shadowing : std::uint8_t {
 };
 
 struct GlintParameters {
-  double slope_variance = 0.0;  ///< sigma^2 of both slope components together, 1e-6 to 1
-  double refractive_index =
-      1.34;  ///< of what lies below over what lies above, 1 to 1e12 (towards which it is a metal mirror)
+  double slope_variance = 0.0;     ///< sigma^2 of both slope components together, 1e-6 to 1
+  double refractive_index = 1.34;  ///< below over above the surface, 1 to 1e12 (which mirrors all but 4e-12)
   Shadowing shadowing = Shadowing::None;
 };
 
@@ -45,8 +44,7 @@ class Glint {
     const double mu_sum = mu_i + mu_r;
     const SumTerms t = sum_terms(i, r);
     const double tilt = std::sin(half_theta_difference(i, r));
-    // |i + r|^2 = mu_sum^2 + level2, the part along the surface as a sum of squares: it vanishes at specular without
-    // loss.
+    // |i + r|^2 = mu_sum^2 + level2: the part along the surface as a sum of squares, so that it vanishes at specular.
     const double level2 = 4.0 * (t.rise2 * (tilt * tilt) + t.sines * t.facing2);
     const double tan2_beta = level2 / (mu_sum * mu_sum);
     const double cos2_omega = std::min(1.0, 0.25 * (mu_sum * mu_sum + level2));

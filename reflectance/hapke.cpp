@@ -107,6 +107,12 @@ Parameters Hapke::parameters() const {
   return parameters;
 }
 
+// A peaked phase function: its forward peak lies below the horizon, closest to the mirror direction.
+Feature Hapke::feature() const {
+  if (p_.g < -0.5) return Feature::HotSpot;
+  return p_.g > 0.5 ? Feature::Lobe : Feature::Smooth;
+}
+
 // f mu_r = scale H(mu) h(u) (1 - mu/(u + mu)), integrated over u = mu_r in [0, 1] and 2 pi of azimuth.
 std::optional<double> Hapke::rho_dh(const Direction& i) const {
   if (p_.g != 0.0) return std::nullopt;

@@ -58,7 +58,7 @@ class Hapke {
   [[nodiscard]] std::string_view model() const { return spec(p_).name; }
   [[nodiscard]] Parameters parameters() const;
   [[nodiscard]] bool is_isotropic() const { return true; }
-  [[nodiscard]] Feature feature() const { return p_.g < -0.5 ? Feature::HotSpot : Feature::Smooth; }
+  [[nodiscard]] Feature feature() const;
 
  private:
   Hapke(HapkeParameters p, double one_minus_omega0);

@@ -186,6 +186,23 @@ TEST(RhoDh, StatesAnErrorThatHoldsAtEveryTolerance) {
   }
 }
 
+TEST(RhoDh, StatesAnErrorThatHoldsWhereverTheDifficultyLies) {
+  const Surface surfaces[] = {surface("glint", {{"slope_variance", 1e-4}, {"refractive_index", 1.34}}),
+                              sea("cox_munk_smith"), surface("hapke_hg", {{"omega0", 0.9}, {"g", -0.49}}),
+                              surface("hapke_hg", {{"omega0", 0.9}, {"g", 0.9}}),
+                              surface("rpv", {{"rho0", 0.133}, {"k", 0.5}, {"g", -0.9}})};
+  for (const Surface& s : surfaces) {
+    for (const double theta : {0.0, 60.0, 88.0, 89.9}) {
+      const Integral close = rho_dh(s, degrees(theta), 1e-10);
+      for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+        const Integral rho = rho_dh(s, degrees(theta), tolerance);
+        EXPECT_LE(std::abs(rho.value - close.value), rho.error + close.error)
+            << s.model() << " at " << theta << " deg to " << tolerance;
+      }
+    }
+  }
+}
+
 TEST(RhoDh, DoesNotDependOnTheAzimuthOfAnIsotropicSurface) {
   const double at_zero = rho_dh(wheat(), 60.0_deg, 1e-12).value;
   const double turned = rho_dh(wheat(), Direction::from_angles(60.0_deg, 123.0_deg), 1e-12).value;
