@@ -145,7 +145,8 @@ std::vector<double> derivative_weights(const std::vector<double>& x) {
   return weights;
 }
 
-// The nearest stops of a sorted line, nearest first; of two as near, the one below.
+// The nearest stops of a sorted line, nearest first; of two as near, the one below. A point's own mirror image is left
+// out: it says that the line is even, and nothing of its slope.
 std::vector<const Stop*> nearest(const Line& line, std::size_t own) {
   std::vector<const Stop*> found;
   std::size_t below = own;
@@ -153,9 +154,12 @@ std::vector<const Stop*> nearest(const Line& line, std::size_t own) {
   const double x0 = line[own].coordinate;
   double last_below = x0;
   double last_above = x0;
+  const auto is_useless = [&](const Stop& stop, double last) {
+    return stop.point == line[own].point || std::abs(stop.coordinate - last) < kSamePlace;
+  };
   while (found.size() < kNeighboursAtMost) {
-    while (below > 0 && last_below - line[below - 1].coordinate < kSamePlace) --below;
-    while (above < line.size() && line[above].coordinate - last_above < kSamePlace) ++above;
+    while (below > 0 && is_useless(line[below - 1], last_below)) --below;
+    while (above < line.size() && is_useless(line[above], last_above)) ++above;
     const double down = below > 0 ? x0 - line[below - 1].coordinate : INFINITY;
     const double up = above < line.size() ? line[above].coordinate - x0 : INFINITY;
     if (std::min(down, up) > kFarthest) break;
@@ -200,29 +204,45 @@ Differentiable differentiable(std::span<const SlopePoint> points, const std::vec
   return d;
 }
 
+struct Estimate {
+  double slope = 0.0;
+  double noise = 0.0;
+};
+
+// Element p is that of the polynomial through the point and its p nearest neighbours; element 0 is a slope of 0.
+std::vector<Estimate> estimates(const std::vector<const Stop*>& nodes, const Differentiable& d) {
+  std::vector<Estimate> found = {{}};
+  std::vector<double> x = {0.0};
+  for (std::size_t order = 1; order < nodes.size(); ++order) {
+    x.push_back(nodes[order]->coordinate - nodes.front()->coordinate);
+    const std::vector<double> weights = derivative_weights(x);
+    Estimate e;
+    for (std::size_t j = 0; j <= order; ++j) {
+      e.slope += weights[j] * d.value[j];
+      e.noise = std::hypot(e.noise, weights[j] * d.u[j]);
+    }
+    found.push_back(e);
+  }
+  return found;
+}
+
 LineSlope slope_on_line(std::span<const SlopePoint> points, const Line& line, std::size_t own) {
   std::vector<const Stop*> nodes = {&line[own]};
   std::ranges::copy(nearest(line, own), std::back_inserter(nodes));
   const Differentiable d = differentiable(points, nodes);
-  std::vector<double> x = {0.0};
+  const std::vector<Estimate> found = estimates(nodes, d);
   LineSlope best;
   double least = INFINITY;
-  double previous = 0.0;
-  for (std::size_t order = 1; order < nodes.size(); ++order) {
-    x.push_back(nodes[order]->coordinate - line[own].coordinate);
-    const std::vector<double> weights = derivative_weights(x);
-    double slope = 0.0;
-    double noise2 = 0.0;
-    for (std::size_t j = 0; j <= order; ++j) {
-      slope += weights[j] * d.value[j];
-      noise2 += std::pow(weights[j] * d.u[j], 2);
-    }
-    const double missed = std::abs(slope - previous);
-    if (noise2 + missed * missed < least) {
-      least = noise2 + missed * missed;
-      best = {.slope = line[own].sign * d.per_unit * slope, .unresolved = d.per_unit * missed, .has_neighbours = true};
-    }
-    previous = slope;
+  for (std::size_t p = 1; p < found.size(); ++p) {
+    double missed = std::abs(found[p].slope - found[p - 1].slope);
+    // Two orders may agree by accident, three hardly.
+    if (p + 1 < found.size()) missed = std::max(missed, std::abs(found[p + 1].slope - found[p].slope));
+    const double all = std::hypot(found[p].noise, missed);
+    if (all >= least) continue;
+    least = all;
+    best = {.slope = line[own].sign * d.per_unit * found[p].slope,
+            .unresolved = d.per_unit * missed,
+            .has_neighbours = true};
   }
   return best;
 }

@@ -37,11 +37,10 @@ struct DirectionSlopes {
 ///   through the normal into the opposite half plane; for an isotropic sample a point also stands for its mirror image
 ///   in the plane of incidence, and theta = 0 belongs to all lines through it;
 /// - polynomials of ln f (lobes and canopies are products; of f where a value does not stand 5 u clear of zero) through
-///   the point and its 1, 2, 3, 4 nearest neighbours within 45 deg give derivatives s_1 .. s_4; with s_0 = 0,
-///   |s_p - s_(p-1)| bounds what order p still misses on a smooth surface;
-/// - taken is the p with the least noise^2 + |s_p - s_(p-1)|^2, `unresolved` is that difference. The noise itself is
-/// part
-///   of s_p, so the expectation of s_p^2 holds it already;
+///   the point and its 1, 2, 3, 4 nearest neighbours within 45 deg give derivatives s_1 .. s_4, s_0 = 0. What order p
+///   misses is taken as the larger of |s_p - s_(p-1)| and |s_(p+1) - s_p|: an estimate for a smooth surface, no bound;
+/// - taken is the p with the least noise^2 + missed^2, `unresolved` is what it misses. The noise itself is part of s_p,
+///   so the expectation of s_p^2 holds it already;
 /// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope;
 /// - without a neighbour: |df/dtheta_i| is taken as large as |df/dtheta_r| and the other way round (equal for what
 /// depends
