@@ -27,7 +27,8 @@ inline constexpr std::string_view kCalibrationCode = "gonio-calibration-1";
 /// - random: noise, monitor, angle repeatability and reproducibility of sample and reference readings. A reference
 /// reading
 ///   that serves several points becomes one shared component of theirs instead;
-/// - shared: certificate; shape modes and the shape's integral; zeros of the arms through d f_s/d angle -
+/// - shared: certificate; shape modes, the shape's integral and its interpolation; zeros of the arms through d f_s/d
+/// angle -
 ///   f_s d ln f_ref/d angle (direction_slopes.h), and what those slopes leave unresolved; exposure offset; linearity
 ///   L(N_s) - L(N_ref), L = eps N / full scale; lamp after the monitor, one component for each correlation time, with
 ///   u^2 = u_after^2 (1 - exp(-dt^2 / (2 correlation^2))); each dark visit and rung; drift between darks, one for each

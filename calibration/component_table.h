@@ -24,6 +24,7 @@ enum class ComponentSource : std::uint8_t {
   Certificate,
   ShapeMode,
   ShapeIntegral,
+  ShapeInterpolation,
   Zero,
   UnresolvedSlope,
   ExposureOffset,

@@ -133,6 +133,9 @@ class Terms {
     }
     add_shared({ComponentSource::ShapeIntegral, 0, 0, 0}, "shape integral", standard_.u_integral(), "1",
                f * standard_.u_integral());
+    const Geometry& g = p_.reference.geometry;
+    add_shared({ComponentSource::ShapeInterpolation, 0, 0, 0}, "shape between the nodes of its table", 1.0,
+               "of what curvature suggests", f * standard_.u_interpolation(g) / standard_.shape(g));
   }
 
   void add_zeros() {

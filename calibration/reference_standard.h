@@ -47,6 +47,10 @@ class ReferenceStandard {
   [[nodiscard]] Result<Measured<double>> reflectance(Wavelength wavelength) const;
   /// s(G), normalised; beyond the table its edge holds (callers have asked check_reach).
   [[nodiscard]] double shape(const Geometry& g) const { return scale_ * definition_.shape.value(g); }
+  /// Standard uncertainty of s(G) between the nodes of its table, where a straight line stands in for a smooth shape.
+  [[nodiscard]] double u_interpolation(const Geometry& g) const {
+    return scale_ * definition_.shape.interpolation_error(g);
+  }
   /// The relative change of s(G) for an amplitude 1 of mode k that keeps the certificate's reflectance: M_k(G) - <M_k>,
   /// the mean weighted with s over the certificate's geometry.
   [[nodiscard]] double mode(std::size_t k, const Geometry& g) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "base/geometry.h"
@@ -20,6 +22,9 @@ class ShapeTable {
              std::vector<double> values);
 
   [[nodiscard]] double value(const Geometry& g) const;
+  /// How far `value` may be from a smooth shape through the same nodes: t (1 - t) h^2 / 2 times the larger second
+  /// derivative that the neighbouring nodes show, summed over the axes. 0 at the nodes. In the table's unit.
+  [[nodiscard]] double interpolation_error(const Geometry& g) const;
 
   [[nodiscard]] const std::vector<Angle>& theta_i() const { return theta_i_; }
   [[nodiscard]] const std::vector<Angle>& theta_r() const { return theta_r_; }
@@ -27,6 +32,14 @@ class ShapeTable {
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
 
  private:
+  /// theta_i, theta_r and dphi, folded.
+  using Place = std::array<Angle, 3>;
+  [[nodiscard]] static Place place_of(const Geometry& g);
+  [[nodiscard]] double at(const Place& place) const;
+  [[nodiscard]] const std::vector<Angle>& grid(std::size_t axis) const {
+    return axis == 0 ? theta_i_ : axis == 1 ? theta_r_ : phi_;
+  }
+
   std::vector<Angle> theta_i_;
   std::vector<Angle> theta_r_;
   std::vector<Angle> phi_;

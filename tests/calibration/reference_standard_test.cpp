@@ -117,6 +117,16 @@ TEST(ReferenceStandard, InterpolatesLinearlyInEachAngleAndFoldsPhi) {
   EXPECT_NEAR(white.shape(at(-20.0_deg, 50.0_deg, 105.0_deg)), expected, kSixDigits);
 }
 
+// A parabola through nodes h apart lies c t (1 - t) h^2 off its chord; the table is linear along the other two angles.
+TEST(ReferenceStandard, SaysHowFarAStraightLineMayBeFromACurvedShape) {
+  const double c = 1e-4;  // per square degree
+  const ReferenceStandard white = standard({.shape = [&](double, double r, double) { return 1.0 + c * r * r; }});
+  const double scale = white.shape(at(0.0_deg, 0.0_deg, 0.0_deg));
+
+  EXPECT_NEAR(white.u_interpolation(at(20.0_deg, 35.0_deg, 70.0_deg)), scale * c * 5.0 * 10.0, 1e-5);
+  EXPECT_NEAR(white.u_interpolation(at(20.0_deg, 45.0_deg, 70.0_deg)), 0.0, 1e-12);
+}
+
 // The midpoint rule over a fine grid, written out here, sees no change of the certificate's reflectance.
 TEST(ReferenceStandard, ModesKeepTheReflectanceThatTheCertificateStates) {
   ReferenceText text{.shape = [](double i, double r, double p) { return 1.1 - i * r * (90.0 - p) / 1e6; }};
