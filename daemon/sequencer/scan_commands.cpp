@@ -187,6 +187,7 @@ void Sequencer::Impl::take_by_hand(const Command& c) {
   }
   by_hand = c;
   by_hand_is_asked = false;
+  by_hand_has_reset = false;
 }
 
 void Sequencer::Impl::start_by_hand() {
@@ -205,6 +206,11 @@ void Sequencer::Impl::on_hand_look(const Result<drivers::StageState>& state) {
   epoch = std::max(epoch, state->epoch);  // of an earlier daemon; while the stage is halted it refuses all the same
   if (std::holds_alternative<ClearStage>(by_hand->verb))
     return ask_stage(StageUse::HandDone, ResetStage{.epoch = epoch});
+  // An earlier daemon's end trips the heartbeat: the next controller clears it. A STOP it never clears.
+  if (state->heartbeat_tripped && !state->halted && !by_hand_has_reset) {
+    by_hand_has_reset = true;
+    return ask_stage(StageUse::HandLook, ResetStage{.epoch = epoch});
+  }
   if (std::holds_alternative<HomeStage>(by_hand->verb)) {
     return ask_stage(StageUse::HandDone, gonio::daemon::Home{.epoch = epoch});
   }

@@ -216,12 +216,14 @@ void Sequencer::Impl::look_again(Duration patience, const std::string& what, Ins
 // ---- running and finishing ----
 
 void Sequencer::Impl::advance_measuring(Instant now) {
-  const bool is_exposing = scan->job && scan->job->phase == Job::Phase::Exposing;
-  if (!is_exposing && !scan->holds.empty()) {
+  // Between two frames an item is in hand as much as during them; one that only moves is given up without loss.
+  const bool is_in_hand = scan->job && (scan->job->phase == Job::Phase::Exposing ||
+                                        (scan->job->measurement && !scan->job->measurement->readings().empty()));
+  if (!is_in_hand && !scan->holds.empty()) {
     drop_job(now);
     return transition(ScanEvent::Hold, now, kDaemon, scan->holds.front().reason);
   }
-  if (!is_exposing && scan->finish_command && scan->state == ScanState::Running) {
+  if (!is_in_hand && scan->finish_command && scan->state == ScanState::Running) {
     drop_job(now);
     const Command command = *std::exchange(scan->finish_command, std::nullopt);
     return transition(ScanEvent::Finish, now, command.who, "asked to finish", command.id);

@@ -139,6 +139,7 @@ struct Sequencer::Impl {
   std::deque<Command> waiting;     ///< commands that came meanwhile
   std::optional<Command> by_hand;  ///< the stage command in work
   bool by_hand_is_asked = false;   ///< its first look is out
+  bool by_hand_has_reset = false;  ///< it has cleared a tripped heartbeat already
 };
 
 }  // namespace gonio::daemon

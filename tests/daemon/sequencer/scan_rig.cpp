@@ -20,7 +20,8 @@ constexpr Duration kWire = std::chrono::microseconds(200);
 
 }  // namespace
 
-ScanRig::ScanRig(Instrument instrument) : instrument_(std::move(instrument)) {
+ScanRig::ScanRig(Instrument instrument, std::optional<std::string> store_path)
+    : instrument_(std::move(instrument)), path_(store_path.value_or(folder_.file("store.sqlite"))) {
   world.stage.homed = true;
   world.stage.boot_counter = 3;
   start();

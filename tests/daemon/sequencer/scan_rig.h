@@ -35,7 +35,8 @@ struct ScriptedInstrument {
 /// one step, so that a test can kill the daemon between any two.
 class ScanRig {
  public:
-  explicit ScanRig(Instrument instrument = bench_instrument());
+  /// Keeps its store in a scratch folder in memory, or at `store_path`, on a disk that is really written.
+  explicit ScanRig(Instrument instrument = bench_instrument(), std::optional<std::string> store_path = std::nullopt);
 
   ScriptedInstrument world;
   std::vector<CommandReply> replies;
@@ -82,7 +83,7 @@ class ScanRig {
 
   Instrument instrument_;
   ScratchFolder folder_;
-  std::string path_ = folder_.file("store.sqlite");
+  std::string path_;
   ManualClock clock_;
   std::unique_ptr<StoreWriter> writer_;
   std::optional<StoreActor> store_;

@@ -171,6 +171,20 @@ TEST(SequencerKill, AStopGivenBeforeTheKillStandsAfterIt) {
   EXPECT_TRUE(rig.world.stage.halted);
 }
 
+TEST(SequencerKill, AFinishThatWasAskedForIsStillWantedAfterAKill) {
+  ScanRig rig;
+  const ScanId id = rig.submit(small_plan());
+  rig.run_until([&] { return rig.count("SELECT count(*) FROM item") == 1; });
+  rig.command(FinishScan{id});
+  rig.run_until([&] { return rig.state_of(id) == ScanState::Finishing; });
+
+  rig.kill();
+  rig.start();
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::FinishedEarly);
+}
+
 TEST(SequencerKill, AChangedInstrumentHolds) {
   ScanRig rig;
   api::Plan plan = small_plan();

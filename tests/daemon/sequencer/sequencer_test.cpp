@@ -133,6 +133,21 @@ TEST_F(SequencerScan, PauseWaitsAfterTheItemAndResumeGoesOn) {
   EXPECT_EQ(accepted(), 6);
 }
 
+TEST_F(SequencerScan, PauseFinishesAnItemOfManyFrames) {
+  rig.world.rate_dn_per_s = [](double, bool) { return 100.0; };
+  const ScanId id = rig.submit(plan_of_three());
+  rig.run_until([&] { return rig.status().doing == "exposing"; });
+  for (int k = 0; k < 12; ++k) rig.step();
+
+  ASSERT_TRUE(answer(PauseScan{.scan = id}));
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Holding);
+  EXPECT_EQ(accepted(), 1);
+  EXPECT_GT(rig.count("SELECT count(*) FROM reading JOIN attempt USING (attempt_id) WHERE used = 1"), 5);
+  EXPECT_EQ(rig.count("SELECT count(*) FROM attempt WHERE outcome = 'dropped'"), 0);
+}
+
 TEST_F(SequencerScan, PauseNowDropsTheItemAndKeepsItsReadings) {
   rig.world.rate_dn_per_s = [](double, bool) { return 100.0; };  // many frames
   const ScanId id = rig.submit(plan_of_three());
@@ -390,6 +405,18 @@ TEST_F(SequencerScan, ByHandOnlyWhileNoScanRuns) {
   answer(PauseScan{.scan = id});
   rig.run_to_rest();
   EXPECT_TRUE(answer(MoveStage{.target = target})) << "allowed on hold";
+}
+
+TEST_F(SequencerScan, AMoveByHandClearsATrippedHeartbeatButNeverAStop) {
+  drivers::MotionTarget target{};
+  target[stage::index_of(stage::Axis::ThetaR)] = 40.0;
+  rig.world.stage.heartbeat_tripped = true;
+  EXPECT_TRUE(answer(MoveStage{.target = target}));
+  EXPECT_FALSE(rig.world.stage.heartbeat_tripped);
+
+  rig.stop();
+  EXPECT_EQ(answer(MoveStage{.target = target}).error().code, ErrorCode::Stopped);
+  EXPECT_TRUE(rig.world.stage.halted);
 }
 
 TEST_F(SequencerScan, AMoveByHandIntoTheShadowIsBlockedAndSendsNothing) {
