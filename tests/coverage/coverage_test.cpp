@@ -91,6 +91,14 @@ const ShortScan::Plan kBetweenTheNodes = {.theta_i_deg = {7.0, 33.0, 58.0},
                                           .theta_r_deg = {2.0, 17.0, 32.0, 47.0, 63.5, 76.0},
                                           .phi_r_deg = {4.0, 63.0, 123.0, 176.0}};
 
+// A dark that wanders by some of its noise, and a shutter 50 us out: the sample's long exposures and the reference's
+// short ones feel both differently.
+const ShortScan::Plan kPoorDetector = {.theta_i_deg = {0.0, 30.0, 60.0},
+                                       .theta_r_deg = {0.0, 25.0, 50.0, 75.0},
+                                       .phi_r_deg = {0.0, 90.0, 180.0},
+                                       .u_exposure_offset_s = 5e-5,
+                                       .u_dark_drift_dn_per_s = 0.1};
+
 class Coverage : public testing::TestWithParam<Case> {};
 
 void report(const Case& c, const Tally& tally, const std::vector<double>& held, const std::vector<double>& ratios) {
@@ -119,8 +127,9 @@ TEST_P(Coverage, HoldsTheTruthAsOftenAsStatedAndNotByWideIntervals) {
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
     scene->seed = c.first_seed + static_cast<std::uint64_t>(repetition);
     const sim::ReadingLevel instrument(*scene);
-    const auto readings = ShortScan(c.plan, points).measure(instrument);
-    const auto scan = calibration::calibrate(readings, stated_model(*scene), *standard, kToday);
+    ShortScan short_scan(c.plan, points);
+    const auto readings = short_scan.measure(instrument);
+    const auto scan = calibration::calibrate(readings, short_scan.stated_model(*scene), *standard, kToday);
     ASSERT_TRUE(scan) << describe(scan.error());
     ASSERT_EQ(scan->points.size(), points.size()) << describe(scan->refused.at(0).reason);
     count(*scan, instrument.truth(), tally);
@@ -147,7 +156,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"hapke", "hapke", 3000}, Case{"rpv", "rpv", 4000}, Case{"wheat", "wheat", 5000},
                     Case{"glint", "glint", 6000}, Case{"dark", "dark", 7000},
                     Case{.name = "below_noise", .scene = "dark", .first_seed = 8000, .brightness = 1e-3},
-                    Case{.name = "between_nodes", .scene = "wheat", .first_seed = 9000, .plan = kBetweenTheNodes}),
+                    Case{.name = "between_nodes", .scene = "wheat", .first_seed = 9000, .plan = kBetweenTheNodes},
+                    Case{.name = "poor_detector", .scene = "dark", .first_seed = 10000, .plan = kPoorDetector}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -26,13 +26,15 @@ std::vector<double> ladder(const sim::DetectorSpec& detector) {
 
 }  // namespace
 
-calibration::InstrumentModel stated_model(const sim::Scene& scene) {
+calibration::InstrumentModel ShortScan::stated_model(const sim::Scene& scene) const {
   constexpr double kRounding = 1.0 / 12.0;
   const sim::DetectorSpec& d = scene.detector;
   return {.detector = {.electrons_per_dn = d.electrons_per_dn,
                        .read_noise_dn = std::sqrt(d.read_noise_dn * d.read_noise_dn + kRounding),
                        .full_scale_dn = sim::kFullScaleDn,
-                       .u_linearity = d.u_linearity},
+                       .exposure_offset_s = {.value = 0.0, .u = plan_.u_exposure_offset_s},
+                       .u_linearity = d.u_linearity,
+                       .u_dark_drift_dn_per_s = plan_.u_dark_drift_dn_per_s},
           .angles = {.u_zero_theta_i = scene.angles.u_zero_theta_i,
                      .u_zero_theta_r = scene.angles.u_zero_theta_r,
                      .u_zero_phi_r = scene.angles.u_zero_phi_r,
@@ -64,9 +66,14 @@ std::vector<PlannedPoint> ShortScan::points_of(const Plan& plan) {
 
 ScanReadings ShortScan::measure(const sim::ReadingLevel& instrument) {
   scan_ = {.isotropic = true, .points = points_, .readings = {}};
+  // A key of its own: the truth draws nothing with this counter.
+  constexpr std::uint64_t kOwnCounter = 1'000'000;
+  chance_ = sim::Chance(instrument.scene().seed, sim::Purpose::Linearity, kOwnCounter);
+  exposure_offset_s_ = plan_.u_exposure_offset_s * chance_.normal();
   visit_dark(instrument);
   for (std::size_t first = 0; first < points_.size(); first += plan_.block) {
     const std::size_t last = std::min(points_.size(), first + plan_.block);
+    dark_drift_dn_per_s_ = plan_.u_dark_drift_dn_per_s * chance_.normal();
     for (const Target target : {Target::Sample, Target::Reference}) {
       for (std::size_t n = first; n < last; ++n) read_item(instrument, points_[n], target);
     }
@@ -121,13 +128,13 @@ void ShortScan::read_item(const sim::ReadingLevel& instrument, const PlannedPoin
 }
 
 RawFrame ShortScan::expose(const sim::ReadingLevel& instrument, sim::ReadingRequest request, double exposure_s) {
-  request.exposure = seconds(exposure_s);
+  request.exposure = seconds(request.is_dark ? exposure_s : exposure_s + exposure_offset_s_);
   request.at_scene_s = now_s_;
   request.exposure_number = ++exposures_;
   const sim::ReadingAnswer answer = instrument.read(request);
   now_s_ += exposure_s + kBetweenFramesS;
   return {.region = {.n = answer.region.n,
-                     .mean = answer.region.mean,
+                     .mean = answer.region.mean + (request.is_dark ? 0.0 : dark_drift_dn_per_s_ * exposure_s),
                      .m2 = answer.region.m2,
                      .m3 = answer.region.m3,
                      .m4 = answer.region.m4,
