@@ -126,6 +126,17 @@ std::uint16_t ListeningSocket::port() const {
   return ntohs(address.any.sa_family == AF_INET6 ? address.v6.sin6_port : address.v4.sin_port);
 }
 
+Result<Listeners> Listeners::bind(const std::string& address, std::uint16_t port, const std::string& path) {
+  Result<ListeningSocket> tcp = ListeningSocket::tcp(address, port);
+  if (!tcp) return failure(tcp.error());
+  Listeners bound{.tcp = std::move(*tcp), .file = std::nullopt, .file_path = path};
+  if (path.empty()) return bound;
+  Result<ListeningSocket> file = ListeningSocket::unix_file(path);
+  if (!file) return failure(file.error());
+  bound.file.emplace(std::move(*file));
+  return bound;
+}
+
 std::string peer_name(int connection) {
   ucred peer{};
   socklen_t size = sizeof peer;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/result.h"
@@ -30,6 +31,16 @@ class ListeningSocket {
  private:
   explicit ListeningSocket(int descriptor) : descriptor_(descriptor) {}
   int descriptor_ = -1;
+};
+
+/// Where a daemon answers: bound before anything else is begun, so that a busy port changes nothing.
+struct Listeners {
+  ListeningSocket tcp;
+  std::optional<ListeningSocket> file;
+  std::string file_path;  ///< removed when the server ends
+
+  /// `path` empty: no unix socket. Errors: those of its parts.
+  [[nodiscard]] static Result<Listeners> bind(const std::string& address, std::uint16_t port, const std::string& path);
 };
 
 /// "uid:1000": who is at the other end of a unix socket's connection; "local" for others.

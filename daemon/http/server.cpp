@@ -85,10 +85,12 @@ void take_body(Call& call, std::string_view bytes) {
 
 class MicroHttpServer final : public Server {
  public:
-  MicroHttpServer(const ServerOptions& options, Service& service, const Clock& clock, std::uint16_t port)
+  MicroHttpServer(const ServerOptions& options, Service& service, const Clock& clock, std::uint16_t port,
+                  std::string socket_file)
       : options_(options),
         clock_(clock),
         port_(port),
+        socket_file_(std::move(socket_file)),
         hub_([&service](std::int64_t after, int at_most) { return service.events(after, at_most); }, options.last_event,
              options.event_client_limit_bytes),
         gateway_(service, hub_, port) {}
@@ -98,7 +100,7 @@ class MicroHttpServer final : public Server {
     hub_.close();
     refuse_all_open();
     for (MHD_Daemon* daemon : daemons_) MHD_stop_daemon(daemon);
-    if (!options_.socket_file.empty()) unlink(options_.socket_file.c_str());
+    if (!socket_file_.empty()) unlink(socket_file_.c_str());
   }
 
   Result<void> serve(ListeningSocket socket) {
@@ -274,6 +276,7 @@ class MicroHttpServer final : public Server {
   const ServerOptions options_;
   const Clock& clock_;
   const std::uint16_t port_;
+  const std::string socket_file_;
   EventHub hub_;
   Gateway gateway_;
   std::vector<MHD_Daemon*> daemons_;
@@ -287,18 +290,11 @@ class MicroHttpServer final : public Server {
 
 }  // namespace
 
-Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Service& service, const Clock& clock) {
-  Result<ListeningSocket> tcp = ListeningSocket::tcp(options.address, options.port);
-  if (!tcp) return failure(tcp.error());
-  std::optional<ListeningSocket> file;
-  if (!options.socket_file.empty()) {
-    Result<ListeningSocket> made = ListeningSocket::unix_file(options.socket_file);
-    if (!made) return failure(made.error());
-    file.emplace(std::move(*made));
-  }
-  auto server = std::make_unique<MicroHttpServer>(options, service, clock, tcp->port());
-  if (file) GONIO_TRY(server->serve(std::move(*file)));
-  GONIO_TRY(server->serve(std::move(*tcp)));
+Result<std::unique_ptr<Server>> Server::start(Listeners listeners, const ServerOptions& options, Service& service,
+                                              const Clock& clock) {
+  auto server = std::make_unique<MicroHttpServer>(options, service, clock, listeners.tcp.port(), listeners.file_path);
+  if (listeners.file) GONIO_TRY(server->serve(std::move(*listeners.file)));
+  GONIO_TRY(server->serve(std::move(listeners.tcp)));
   server->start_housekeeping();
   return server;
 }

@@ -6,14 +6,12 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "daemon/http/listening_socket.h"
 #include "daemon/http/service.h"
 
 namespace gonio::daemon {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 8470;                           ///< 0: any free one
-  std::string socket_file;                             ///< a unix socket beside it; empty: none
   std::int64_t last_event = 0;                         ///< the newest event of the store
   std::size_t event_client_limit_bytes = 256U << 10U;  ///< of events that wait for one client
   Duration keep_alive = std::chrono::seconds(10);
@@ -24,9 +22,9 @@ struct ServerOptions {
 /// millisecond. At most 512 connections. The destructor answers what is open, then closes.
 class Server {
  public:
-  /// `service` and `clock` must outlive the server. Errors: PortBusy, NotAuthorised, InvalidInput.
-  [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Service& service,
-                                                             const Clock& clock);
+  /// `service` and `clock` must outlive the server. Errors: Internal (no thread to be had).
+  [[nodiscard]] static Result<std::unique_ptr<Server>> start(Listeners listeners, const ServerOptions& options,
+                                                             Service& service, const Clock& clock);
   virtual ~Server() = default;
 
   [[nodiscard]] virtual std::uint16_t port() const = 0;

@@ -23,8 +23,9 @@ using testing::Not;
 class Gonioctl : public testing::Test {
  protected:
   void SetUp() override {
-    Result<std::unique_ptr<daemon::Server>> started =
-        daemon::Server::start({.port = 0, .socket_file = folder_ / "s"}, service_, clock_);
+    Result<daemon::Listeners> bound = daemon::Listeners::bind("127.0.0.1", 0, folder_ / "s");
+    ASSERT_TRUE(bound.has_value()) << describe(bound.error());
+    Result<std::unique_ptr<daemon::Server>> started = daemon::Server::start(std::move(*bound), {}, service_, clock_);
     ASSERT_TRUE(started.has_value()) << describe(started.error());
     server_ = std::move(*started);
     connect_ = "http://127.0.0.1:" + std::to_string(server_->port());

@@ -20,9 +20,10 @@ constexpr std::chrono::seconds kHanging{60};
 
 class EventStream : public testing::Test {
  protected:
-  void start(ServerOptions options = {}) {
-    options.port = 0;
-    Result<std::unique_ptr<Server>> started = Server::start(options, service_, clock_);
+  void start(const ServerOptions& options = {}) {
+    Result<Listeners> bound = Listeners::bind("127.0.0.1", 0, "");
+    ASSERT_TRUE(bound.has_value()) << describe(bound.error());
+    Result<std::unique_ptr<Server>> started = Server::start(std::move(*bound), options, service_, clock_);
     ASSERT_TRUE(started.has_value()) << describe(started.error());
     server_ = std::move(*started);
   }

@@ -30,9 +30,10 @@ constexpr std::chrono::seconds kHanging{30};  // bounds a hanging test
 
 class ServerTest : public testing::Test {
  protected:
-  void start(ServerOptions options = {}) {
-    options.port = 0;
-    Result<std::unique_ptr<Server>> started = Server::start(options, service_, clock_);
+  void start(const ServerOptions& options = {}, const std::string& socket_file = {}) {
+    Result<Listeners> bound = Listeners::bind("127.0.0.1", 0, socket_file);
+    ASSERT_TRUE(bound.has_value()) << describe(bound.error());
+    Result<std::unique_ptr<Server>> started = Server::start(std::move(*bound), options, service_, clock_);
     ASSERT_TRUE(started.has_value()) << describe(started.error());
     server_ = std::move(*started);
   }
@@ -254,7 +255,7 @@ TEST_F(ServerTest, EndsWithRequestsOpenAndClientsListening) {
 TEST_F(ServerTest, APortThatIsTakenIsAnError) {
   start();
 
-  const Result<std::unique_ptr<Server>> second = Server::start({.port = server_->port()}, service_, clock_);
+  const Result<Listeners> second = Listeners::bind("127.0.0.1", server_->port(), "");
 
   ASSERT_FALSE(second.has_value());
   EXPECT_EQ(second.error().code, ErrorCode::PortBusy);
@@ -262,7 +263,7 @@ TEST_F(ServerTest, APortThatIsTakenIsAnError) {
 }
 
 TEST_F(ServerTest, AnAddressBeyondLoopbackIsRefused) {
-  const Result<std::unique_ptr<Server>> server = Server::start({.address = "0.0.0.0", .port = 0}, service_, clock_);
+  const Result<Listeners> server = Listeners::bind("0.0.0.0", 0, "");
 
   ASSERT_FALSE(server.has_value());
   EXPECT_EQ(server.error().code, ErrorCode::NotAuthorised);
@@ -288,7 +289,7 @@ std::string ask_unix_socket(const std::string& path, const std::string& request)
 
 TEST_F(ServerTest, OnTheUnixSocketTheCallerIsKnownByItsUserId) {
   const test::TemporaryFolder folder;
-  start({.socket_file = folder / "s"});
+  start({}, folder / "s");
 
   const std::string answer = ask_unix_socket(folder / "s",
                                              "POST /api/v1/stop HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
@@ -300,15 +301,15 @@ TEST_F(ServerTest, OnTheUnixSocketTheCallerIsKnownByItsUserId) {
 
 TEST_F(ServerTest, AUnixSocketInUseIsAnErrorAndAnAbandonedOneIsNot) {
   const test::TemporaryFolder folder;
-  start({.socket_file = folder / "s"});
+  start({}, folder / "s");
 
-  const auto second = Server::start({.port = 0, .socket_file = folder / "s"}, service_, clock_);
+  const Result<Listeners> second = Listeners::bind("127.0.0.1", 0, folder / "s");
   ASSERT_FALSE(second.has_value());
   EXPECT_EQ(second.error().code, ErrorCode::PortBusy);
 
   server_.reset();
   test::write_text(folder / "s", "");
-  start({.socket_file = folder / "s"});
+  start({}, folder / "s");
 }
 
 }  // namespace

@@ -1,0 +1,304 @@
+#include "daemon/app/daemon_service.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "daemon/app/calibration_desk.h"
+#include "daemon/app/plan_desk.h"
+#include "daemon/app/results.h"
+#include "daemon/app/scan_reports.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr int kScansShown = 1000;
+constexpr std::size_t kOrderShown = 1000;
+
+drivers::MotionTarget target_of(const api::MoveRequest& request) {
+  drivers::MotionTarget target{};
+  const auto set = [&](stage::Axis axis, const std::optional<double>& value) { target[stage::index_of(axis)] = value; };
+  set(stage::Axis::ThetaI, request.theta_i_deg);
+  set(stage::Axis::ThetaR, request.theta_r_deg);
+  set(stage::Axis::PhiR, request.phi_r_deg);
+  set(stage::Axis::PhiI, request.phi_i_deg);
+  set(stage::Axis::Carriage, request.carriage_mm);
+  set(stage::Axis::FilterWheel, request.filter_wheel_slot);
+  return target;
+}
+
+Verb verb_of(ScanId scan, ScanVerb verb, const std::string& reason) {
+  switch (verb) {
+    case ScanVerb::Pause:
+      return PauseScan{.scan = scan, .now = false, .reason = reason};
+    case ScanVerb::PauseNow:
+      return PauseScan{.scan = scan, .now = true, .reason = reason};
+    case ScanVerb::Resume:
+      return ResumeScan{scan};
+    case ScanVerb::Finish:
+      return FinishScan{scan};
+    case ScanVerb::Abort:
+      return AbortScan{.scan = scan, .reason = reason};
+    case ScanVerb::Skip:
+      return SkipItemInHand{scan};
+  }
+  return ResumeScan{scan};
+}
+
+NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, const std::string& key,
+                 const std::string& who, const Instrument& instrument) {
+  NewScan scan;
+  scan.idempotency_key = key;
+  scan.name = checked.plan.name;
+  scan.sample = checked.plan.sample;
+  scan.isotropic = checked.plan.isotropic;
+  scan.policy = policy_of(checked.plan);
+  scan.plan_text = submission.plan;
+  scan.plan_file = submission.plan_file;
+  scan.reference_serial = checked.plan.reference_standard;
+  scan.reference_text = std::move(checked.reference.text);
+  scan.instrument_text = instrument.text;
+  scan.instrument_hash = instrument.sha256;
+  scan.planned = std::move(checked.planned);
+  scan.who = who;
+  return scan;
+}
+
+api::PlanReport plan_report(const CheckedPlan& checked) {
+  api::PlanReport report;
+  report.name = checked.plan.name;
+  report.sample = checked.plan.sample;
+  report.reference = checked.plan.reference_standard;
+  report.planner_version = checked.planned.planner_version;
+  report.asked = checked.planned.asked;
+  report.points = std::ssize(checked.planned.points);
+  report.merged = checked.planned.merged;
+  report.blocked = checked.planned.blocked;
+  report.items = checked.planned.items;
+  report.estimate = time_split(checked.planned.estimate);
+  report.estimate_s = report.estimate.total_s();
+  const std::size_t shown = std::min(kOrderShown, checked.planned.order.size());
+  report.order.assign(checked.planned.order.begin(),
+                      checked.planned.order.begin() + static_cast<std::ptrdiff_t>(shown));
+  return report;
+}
+
+}  // namespace
+
+DaemonService::DaemonService(Parts parts) : parts_(std::move(parts)), started_(parts_.clock.now()) {}
+
+template <class Ask>
+auto DaemonService::ask_store(Ask ask) -> decltype(ask(std::declval<StoreReader&>())) {
+  std::unique_ptr<StoreReader> reader;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!readers_.empty()) {
+      reader = std::move(readers_.back());
+      readers_.pop_back();
+    }
+  }
+  if (!reader) {
+    Result<std::unique_ptr<StoreReader>> opened = StoreReader::open(parts_.store_file);
+    if (!opened) return failure(opened.error());
+    reader = std::move(*opened);
+  }
+  auto answer = ask(*reader);
+  const std::lock_guard lock(mutex_);
+  readers_.push_back(std::move(reader));
+  return answer;
+}
+
+void DaemonService::stop(const std::string& who, Reply<api::StopReport> reply) {
+  parts_.engine.stop(who, [reply = std::move(reply)](const Result<drivers::Epoch>& epoch) {
+    reply(epoch ? Result<api::StopReport>(api::StopReport{.epoch = *epoch}) : failure(epoch.error()));
+  });
+}
+
+void DaemonService::command(const std::string& who, Verb verb, Reply<api::CommandReport> reply) {
+  parts_.engine.command(who, std::move(verb), [reply = std::move(reply)](const Result<CommandDone>& done) {
+    if (!done) return reply(failure(done.error()));
+    reply(api::CommandReport{.scan = done->scan, .existed = done->existed});
+  });
+}
+
+void DaemonService::move_stage(const api::MoveRequest& request, const std::string& who,
+                               Reply<api::CommandReport> reply) {
+  command(who,
+          MoveStage{.target = target_of(request),
+                    .source_shutter_open = request.source_shutter_open,
+                    .detector_shutter_open = request.detector_shutter_open},
+          std::move(reply));
+}
+
+void DaemonService::home_stage(const std::string& who, Reply<api::CommandReport> reply) {
+  command(who, HomeStage{}, std::move(reply));
+}
+
+void DaemonService::reset_stage(const std::string& who, Reply<api::CommandReport> reply) {
+  command(who, ClearStage{}, std::move(reply));
+}
+
+void DaemonService::submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key,
+                                const std::string& who, Reply<api::CommandReport> reply) {
+  Result<CheckedPlan> checked = daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now());
+  if (!checked) return reply(failure(checked.error()));
+  command(who, SubmitScan{new_scan(std::move(*checked), submission, idempotency_key, who, parts_.instrument)},
+          std::move(reply));
+}
+
+void DaemonService::change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,
+                                Reply<api::CommandReport> reply) {
+  command(who, verb_of(scan, verb, reason), std::move(reply));
+}
+
+Result<api::StatusReport> DaemonService::status() {
+  const Instant now = parts_.clock.now();
+  const SequencerStatus sequencer = parts_.engine.status();
+  const Result<std::int64_t> last = ask_store([](StoreReader& store) { return store.last_event(); });
+  if (!last) return failure(last.error());
+  api::StatusReport report{.version = parts_.version,
+                           .instrument = parts_.instrument.name,
+                           .instrument_sha256 = parts_.instrument.sha256,
+                           .uptime_s = in_seconds(now - started_),
+                           .doing = sequencer.doing,
+                           .stage_stopped = sequencer.stage_stopped,
+                           .queued = sequencer.queued,
+                           .stage_error = parts_.engine.stage().error(),
+                           .detector_error = parts_.engine.detector_error(),
+                           .store_error = sequencer.store_error,
+                           .last_event = *last};
+  if (const auto state = parts_.engine.stage().value()) report.stage = stage_report(*state, now);
+  if (sequencer.active) {
+    const Result<ScanInfo> info = ask_store([&](StoreReader& store) { return store.scan(sequencer.active->scan); });
+    if (!info) return failure(info.error());
+    report.active = scan_report(*info, now);
+    add_progress(*report.active, sequencer, now);
+  }
+  return report;
+}
+
+api::HealthReport DaemonService::health() {
+  return {.ok = !parts_.engine.status().store_error && !parts_.engine.stage().error(), .version = parts_.version};
+}
+
+std::string DaemonService::metrics() {
+  const SequencerStatus status = parts_.engine.status();
+  std::string text = fmt::format("# TYPE goniod_info gauge\ngoniod_info{{version=\"{}\"}} 1\n", parts_.version);
+  const auto gauge = [&](std::string_view name, auto value) {
+    text += fmt::format("# TYPE goniod_{0} gauge\ngoniod_{0} {1}\n", name, value);
+  };
+  gauge("uptime_seconds", in_seconds(parts_.clock.now() - started_));
+  gauge("stage_stopped", status.stage_stopped ? 1 : 0);
+  gauge("stage_failing", parts_.engine.stage().error() ? 1 : 0);
+  gauge("detector_failing", parts_.engine.detector_error() ? 1 : 0);
+  gauge("store_failing", status.store_error ? 1 : 0);
+  gauge("scans_queued", status.queued.size());
+  if (status.active) {
+    gauge("scan_items", status.active->items);
+    gauge("scan_items_accepted", status.active->accepted);
+    gauge("scan_items_skipped", status.active->skipped);
+    gauge("scan_holds", status.active->holds.size());
+  }
+  return text;
+}
+
+Result<api::StageReport> DaemonService::stage() {
+  const std::optional<Error> error = parts_.engine.stage().error();
+  if (error) return failure(*error);
+  const std::optional<drivers::StageState> state = parts_.engine.stage().value();
+  if (state) return stage_report(*state, parts_.clock.now());
+  return failure({.code = ErrorCode::Unreachable,
+                  .device = "stage",
+                  .tried = "show where it is",
+                  .seen = "it has not answered yet",
+                  .limit = {}});
+}
+
+Result<api::PlanReport> DaemonService::check_plan(const api::PlanSubmission& submission) {
+  const Result<CheckedPlan> checked =
+      daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now());
+  if (!checked) return failure(checked.error());
+  return plan_report(*checked);
+}
+
+Result<api::ScanList> DaemonService::scans() {
+  const Result<std::vector<ScanInfo>> infos = ask_store([](StoreReader& store) { return store.scans(0, kScansShown); });
+  if (!infos) return failure(infos.error());
+  const Instant now = parts_.clock.now();
+  const SequencerStatus sequencer = parts_.engine.status();
+  api::ScanList list;
+  for (const ScanInfo& info : *infos) {
+    list.scans.push_back(scan_report(info, now));
+    add_progress(list.scans.back(), sequencer, now);
+  }
+  return list;
+}
+
+Result<api::ScanReport> DaemonService::scan(std::int64_t scan) {
+  const Result<ScanInfo> info = ask_store([scan](StoreReader& store) { return store.scan(scan); });
+  if (!info) return failure(info.error());
+  const Instant now = parts_.clock.now();
+  api::ScanReport report = scan_report(*info, now);
+  add_progress(report, parts_.engine.status(), now);
+  if (!is_over(info->state)) return report;
+  const Result<BrdfInfo> brdf = ask_store([scan](StoreReader& store) { return brdf_of(store, scan); });
+  if (!brdf) return report;  // the scan is there all the same; GET brdf says why it has no values
+  const RelativeUncertainty u = relative_uncertainty(*brdf);
+  report.brdf_values = u.values;
+  report.median_relative_u = u.median;
+  report.worst_relative_u = u.worst;
+  return report;
+}
+
+Result<api::PointPage> DaemonService::points(std::int64_t scan, std::int64_t after, int at_most) {
+  const auto from = static_cast<std::int32_t>(std::clamp<std::int64_t>(after, -1, INT32_MAX));
+  const Result<std::vector<PointInfo>> infos =
+      ask_store([&](StoreReader& store) { return store.points(scan, from, at_most); });
+  if (!infos) return failure(infos.error());
+  api::PointPage page;
+  for (const PointInfo& info : *infos) page.points.push_back(point_report(info));
+  if (std::ssize(page.points) == at_most) page.next_after = page.points.back().index;
+  return page;
+}
+
+Result<api::BrdfPage> DaemonService::brdf(std::int64_t scan, std::int64_t after, int at_most) {
+  const auto all = ask_store([scan](StoreReader& store) { return results_of(store, scan); });
+  if (!all) return failure(all.error());
+  api::BrdfPage page;
+  for (const api::BrdfReport& value : *all) {
+    if (value.point > after && std::ssize(page.values) < at_most) page.values.push_back(value);
+  }
+  if (std::ssize(page.values) == at_most) page.next_after = page.values.back().point;
+  return page;
+}
+
+Result<std::string> DaemonService::export_csv(std::int64_t scan) {
+  return ask_store([&](StoreReader& store) { return daemon::export_csv(store, scan, "goniod " + parts_.version); });
+}
+
+Result<api::ReferenceList> DaemonService::references() {
+  api::ReferenceList list;
+  for (const ShelfEntry& entry : parts_.shelf.all()) {
+    api::ReferenceReport report{.file = entry.file};
+    if (entry.standard) {
+      report.serial = entry.standard->serial();
+      report.material = entry.standard->material();
+      report.certificate_date = entry.standard->certificate().date;
+      report.expires = entry.standard->certificate().expires;
+    } else {
+      report.error = entry.standard.error();
+    }
+    list.references.push_back(std::move(report));
+  }
+  return list;
+}
+
+Result<std::vector<api::Event>> DaemonService::events(std::int64_t after, int at_most) {
+  const auto records = ask_store([&](StoreReader& store) { return store.events(after, at_most, 0); });
+  if (!records) return failure(records.error());
+  std::vector<api::Event> events;
+  for (const EventRecord& record : *records) events.push_back(event_report(record));
+  return events;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/clock.h"
+#include "daemon/app/engine.h"
+#include "daemon/app/reference_shelf.h"
+#include "daemon/http/service.h"
+#include "daemon/store/store_reader.h"
+
+namespace gonio::daemon {
+
+/// The routes' side of the daemon: commands to the engine, questions to the store and to what the engine last saw.
+class DaemonService final : public Service {
+ public:
+  struct Parts {
+    Engine& engine;
+    const Instrument& instrument;
+    const ReferenceShelf& shelf;
+    const Clock& clock;
+    std::string store_file;
+    std::string version;
+  };
+  explicit DaemonService(Parts parts);
+
+  void stop(const std::string& who, Reply<api::StopReport> reply) override;
+  void move_stage(const api::MoveRequest& request, const std::string& who, Reply<api::CommandReport> reply) override;
+  void home_stage(const std::string& who, Reply<api::CommandReport> reply) override;
+  void reset_stage(const std::string& who, Reply<api::CommandReport> reply) override;
+  void submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key, const std::string& who,
+                   Reply<api::CommandReport> reply) override;
+  void change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,
+                   Reply<api::CommandReport> reply) override;
+
+  Result<api::StatusReport> status() override;
+  api::HealthReport health() override;
+  std::string metrics() override;
+  Result<api::StageReport> stage() override;
+  Result<api::PlanReport> check_plan(const api::PlanSubmission& submission) override;
+  Result<api::ScanList> scans() override;
+  Result<api::ScanReport> scan(std::int64_t scan) override;
+  Result<api::PointPage> points(std::int64_t scan, std::int64_t after, int at_most) override;
+  Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) override;
+  Result<std::string> export_csv(std::int64_t scan) override;
+  Result<api::ReferenceList> references() override;
+  Result<std::vector<api::Event>> events(std::int64_t after, int at_most) override;
+
+ private:
+  /// A reader of its own for one request; kept for the next when it is done with.
+  template <class Ask>
+  auto ask_store(Ask ask) -> decltype(ask(std::declval<StoreReader&>()));
+  void command(const std::string& who, Verb verb, Reply<api::CommandReport> reply);
+
+  Parts parts_;
+  const Instant started_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<StoreReader>> readers_;
+};
+
+}  // namespace gonio::daemon

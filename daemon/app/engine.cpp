@@ -1,0 +1,209 @@
+#include "daemon/app/engine.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "daemon/app/calibration_desk.h"
+#include "daemon/app/log.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr std::size_t kMailbox = 1024;
+constexpr std::size_t kMostScansToCompute = 256;
+
+// A promise of our own was broken: whatever moves is stopped by the stage's watch once this process has gone.
+void on_bug(const std::string& what) {
+  log_error("a thread broke a promise and the daemon ends: " + what);
+  std::abort();
+}
+
+bool ends_a_scan(const EventRecord& event) {
+  return event.kind == "scan-done" || event.kind == "scan-finished-early";
+}
+
+}  // namespace
+
+Engine::Engine(Config config, EngineDevices devices, StoreWriter& writer, const Clock& clock, OnEvent on_event)
+    : config_(std::move(config)),
+      writer_(writer),
+      clock_(clock),
+      on_event_(std::move(on_event)),
+      to_sequencer_(kMailbox),
+      halt_(devices.halt_line, clock, HaltPathConfig{.heartbeat_timeout = config_.instrument.stage.heartbeat_timeout},
+            [this](const HaltPathReport& report) { on_halt(report); }),
+      stage_actor_(devices.stage, config_.instrument.stage, [this](const StageAnswer& answer) { on_stage(answer); }),
+      detector_actor_(devices.detector, config_.instrument.detector.aperture,
+                      [this](DetectorActor::Answer answer) { on_detector(std::move(answer)); }),
+      store_desk_(*this),
+      calibrator_(std::make_unique<Worker>(kMostScansToCompute)) {
+  store_thread_ =
+      std::make_unique<ActorThread<StoreDesk, StoreRequest>>("store", store_desk_, clock_, kMailbox, on_bug);
+  stage_thread_ =
+      std::make_unique<ActorThread<StageActor, StageRequest>>("stage", stage_actor_, clock_, kMailbox, on_bug);
+  detector_thread_ = std::make_unique<ActorThread<DetectorActor, DetectorRequest>>("detector", detector_actor_, clock_,
+                                                                                   kMailbox, on_bug);
+  desk_ = std::make_unique<SequencerDesk>(SequencerConfig{.instrument = config_.instrument, .epoch = halt_.epoch()},
+                                          ports(), clock_.now());
+  sequencer_thread_ = std::thread([this] { run_sequencer(); });
+  pthread_setname_np(sequencer_thread_.native_handle(), "sequencer");
+}
+
+Engine::~Engine() {
+  to_sequencer_.close();
+  sequencer_thread_.join();
+  calibrator_.reset();
+  detector_thread_->stop();
+  stage_thread_->stop();
+  store_thread_->stop();
+}
+
+void Engine::stop(const std::string& who, std::function<void(Result<drivers::Epoch>)> done) {
+  // Noted before: the halt may be acknowledged before `stop` has returned. The one that comes has at least this number.
+  stops_.add(halt_.epoch() + 1U, std::move(done));
+  halt_.stop(who);
+}
+
+void Engine::command(const std::string& who, Verb verb, std::function<void(Result<CommandDone>)> done) {
+  const CommandId id = next_command_++;
+  commands_.add(id, std::move(done));
+  if (to_sequencer_.post(Command{.id = id, .who = who, .verb = std::move(verb)})) return;
+  commands_.answer(id, failure({.code = ErrorCode::Busy,
+                                .device = "sequencer",
+                                .tried = "take on a command",
+                                .seen = fmt::format("{} messages wait already", kMailbox),
+                                .limit = {}}));
+}
+
+SequencerDesk::Ports Engine::ports() {
+  const Duration beat = config_.instrument.stage.heartbeat_timeout / 4;
+  return {.to_stage = [this](StageRequest request) { return stage_thread_->post(std::move(request)); },
+          .to_detector = [this](DetectorRequest request) { return detector_thread_->post(std::move(request)); },
+          .to_store = [this](StoreRequest request) { return store_thread_->post(std::move(request)); },
+          .reply = [this](const CommandReply& reply) { on_reply(reply); },
+          .renew = [this] { halt_.renew(); },
+          .renew_every = beat / 2};
+}
+
+// The loop of ActorThread, on a mailbox that is there before any actor that answers into it.
+void Engine::run_sequencer() try {
+  std::optional<Instant> wake = desk_->step(clock_.now());
+  while (!to_sequencer_.is_closed()) {
+    const std::optional<SequencerMessage> message = to_sequencer_.take_until(wake, clock_);
+    if (message) desk_->on(*message, clock_.now());
+    if (!to_sequencer_.is_closed()) wake = desk_->step(clock_.now());
+  }
+} catch (const std::exception& bug) {
+  on_bug(bug.what());
+}
+
+void Engine::tell(SequencerMessage message) {
+  if (to_sequencer_.post(std::move(message)) || to_sequencer_.is_closed()) return;
+  on_bug("the sequencer's mailbox is full: an answer would be lost");
+}
+
+void Engine::on_stage(const StageAnswer& answer) {
+  if (answer.state) {
+    if (stage_seen_.error()) log_info("stage: answers again");
+    halt_.adopt(answer.state->epoch);  // after a restart of the daemon the stage knows the higher one
+    stage_seen_.set(*answer.state);
+  } else {
+    const std::optional<Error> before = stage_seen_.error();
+    if (!before || before->code != answer.state.error().code) log_warning(describe(answer.state.error()));
+    stage_seen_.set_error(answer.state.error());
+  }
+  tell(answer);
+}
+
+void Engine::on_detector(DetectorActor::Answer answer) {
+  const auto note = [this](const auto& result) {
+    if (result) {
+      detector_seen_.set(true);
+      return;
+    }
+    log_warning(describe(result.error()));
+    detector_seen_.set_error(result.error());
+  };
+  if (auto* frame = std::get_if<FrameAnswer>(&answer)) {
+    note(frame->frame);
+    tell(std::move(*frame));
+  } else {
+    auto& prepared = std::get<DetectorAnswer>(answer);
+    note(prepared.detector);
+    if (prepared.detector) {
+      log_info(fmt::format("detector: {} {}, serial {}", prepared.detector->vendor, prepared.detector->model,
+                           prepared.detector->serial));
+    }
+    tell(std::move(prepared));
+  }
+}
+
+void Engine::on_store(StoreActor::Answer answer) {
+  if (auto* loaded = std::get_if<UnfinishedAnswer>(&answer)) {
+    if (!loaded->scans) log_error(describe(loaded->scans.error()));
+    tell(std::move(*loaded));
+    return;
+  }
+  auto& commit = std::get<CommitAnswer>(answer);
+  if (!commit.receipt) log_error(describe(commit.receipt.error()));
+  if (commit.receipt) {
+    for (const EventRecord& event : commit.receipt->events) publish(event);
+  }
+  if (commit.ticket != SequencerDesk::kOwnTicket) tell(std::move(commit));
+}
+
+void Engine::publish(const EventRecord& event) {
+  const std::string sentence =
+      fmt::format("event {}: {}, scan {}, by {}: {}", event.number, event.kind, event.scan, event.who, event.json);
+  if (event.kind.starts_with("item-accepted")) {
+    log_debug(sentence);
+  } else {
+    log_info(sentence);
+  }
+  on_event_(event);
+  if (!ends_a_scan(event)) return;
+  if (!calibrator_->post([this, scan = event.scan] { compute_brdf_of(scan); })) {
+    log_warning(fmt::format("scan {}: its BRDF is computed when it is asked for", event.scan));
+  }
+}
+
+// Runs on the calibrator's thread, on its own connection to the store.
+void Engine::compute_brdf_of(ScanId scan) {
+  const Result<std::unique_ptr<StoreReader>> reader = StoreReader::open(config_.store_file);
+  Result<NewBrdf> brdf = reader ? compute_brdf(**reader, scan) : failure(reader.error());
+  if (!brdf) {
+    log_error(fmt::format("scan {}: no BRDF: {}", scan, describe(brdf.error())));
+    return;
+  }
+  log_info(fmt::format("scan {}: BRDF of {} points by {}", scan, brdf->rows.size(), brdf->code_version));
+  StoreTransaction transaction{.at = clock_.now(), .writes = {std::move(*brdf)}};
+  transaction.events.push_back({.kind = "brdf-computed", .scan = scan, .who = "goniod", .json = "{}"});
+  if (!store_thread_->post(Commit{SequencerDesk::kOwnTicket, std::move(transaction)})) {
+    log_warning(fmt::format("scan {}: its BRDF was not stored; it is computed when it is asked for", scan));
+  }
+}
+
+void Engine::on_halt(const HaltPathReport& report) {
+  if (const auto* line = std::get_if<HaltLineReport>(&report)) {
+    if (line->is_up) log_info("stage: the line of STOP and heartbeat is up");
+    if (!line->is_up && line->error)
+      log_warning("stage: the line of STOP and heartbeat is down: " + describe(*line->error));
+    return;
+  }
+  const auto& halt = std::get<HaltReport>(report);
+  if (halt.outcome) {
+    log_warning(fmt::format("stage: STOP by {}, acknowledged after {:.1f} ms, epoch {}", halt.who,
+                            1e3 * in_seconds(halt.took), halt.epoch));
+  } else {
+    log_error(fmt::format("stage: STOP by {} not delivered yet: {}", halt.who, describe(halt.outcome.error())));
+  }
+  if (told_epoch_.exchange(halt.epoch) != halt.epoch) tell(StopHappened{.epoch = halt.epoch, .who = halt.who});
+  stops_.answer_up_to(halt.epoch, halt.outcome ? Result<drivers::Epoch>(halt.epoch) : failure(halt.outcome.error()));
+}
+
+void Engine::on_reply(const CommandReply& reply) {
+  commands_.answer(reply.id, reply.result);
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,194 @@
+// goniod: options, then one thing after the other that can be refused, then the threads, then waiting for the end.
+#include <csignal>
+
+#include <atomic>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "daemon/app/daemon_service.h"
+#include "daemon/app/engine.h"
+#include "daemon/app/log.h"
+#include "daemon/app/options.h"
+#include "daemon/app/scan_reports.h"
+#include "daemon/app/simulate.h"
+#include "daemon/engine/file_limit.h"
+#include "daemon/http/server.h"
+#include "daemon/store/store_writer.h"
+#include "drivers/genicam_camera/genicam_camera.h"
+#include "drivers/links/aravis_camera_link.h"
+#include "drivers/links/tcp_modbus_link.h"
+#include "drivers/modbus_stage/modbus_halt_line.h"
+#include "drivers/modbus_stage/modbus_stage.h"
+
+namespace gonio::daemon {
+namespace {
+
+/// The links and drivers of the instrument. Nothing is connected before the first call.
+class Devices {
+ public:
+  Devices(const Instrument& instrument, const Clock& clock)
+      : stage_link_(modbus(instrument)),
+        halt_link_(modbus(instrument)),
+        camera_link_({.address = instrument.detector.address}),
+        stage_(stage_link_, instrument.stage, clock),
+        halt_line_(halt_link_, instrument.stage.registers),
+        camera_(camera_link_, camera(instrument.detector), clock) {}
+
+  [[nodiscard]] EngineDevices all() { return {.stage = stage_, .detector = camera_, .halt_line = halt_line_}; }
+
+ private:
+  static drivers::TcpModbusConfig modbus(const Instrument& instrument) {
+    return {.address = instrument.stage_address.host,
+            .port = instrument.stage_address.port,
+            .unit_id = instrument.stage.registers.unit_id,
+            .reply_timeout = instrument.stage.reply_timeout,
+            .connect_timeout = instrument.stage.reply_timeout};
+  }
+  static drivers::GenicamCameraConfig camera(const DetectorConfig& detector) {
+    return {.serial = detector.serial,
+            .format = {.width = detector.width_px,
+                       .height = detector.height_px,
+                       .pixel_format = detector.pixel_format,
+                       .packet_size_bytes = detector.packet_size_bytes},
+            .settings = {.exposure = detector.shortest_exposure, .gain_db = detector.gain_db}};
+  }
+
+  drivers::TcpModbusLink stage_link_;
+  drivers::TcpModbusLink halt_link_;  ///< STOP waits for nobody's exchange
+  drivers::AravisCameraLink camera_link_;
+  drivers::ModbusStage stage_;
+  drivers::ModbusHaltLine halt_line_;
+  drivers::GenicamCamera camera_;
+};
+
+/// Events go out once there is a server; those committed before are fetched from the store by whoever asks.
+class Publisher {
+ public:
+  void attach(Server& server) { server_ = &server; }
+  void operator()(const EventRecord& event) const {
+    if (Server* server = server_) server->publish(event_report(event));
+  }
+
+ private:
+  std::atomic<Server*> server_{nullptr};
+};
+
+std::string boot_id() {
+  std::ifstream in("/proc/sys/kernel/random/boot_id");
+  std::string id;
+  std::getline(in, id);
+  return id;
+}
+
+// Written aside, then renamed: whoever sees it can read it whole.
+Result<void> write_ready_file(const std::string& path, const std::string& url) {
+  const std::string aside = path + ".part";
+  std::ofstream out(aside);
+  out << url << '\n';
+  out.close();
+  if (out.good() && std::rename(aside.c_str(), path.c_str()) == 0) return {};
+  return failure({.code = ErrorCode::InvalidInput,
+                  .device = "goniod",
+                  .tried = "write the ready file",
+                  .seen = "it cannot be written",
+                  .where = InputLocation{path, 0, "--ready-file"}});
+}
+
+void log_references(const ReferenceShelf& shelf) {
+  for (const ShelfEntry& entry : shelf.all()) {
+    if (entry.standard) {
+      log_info(fmt::format("reference: {} ({}), certificate of {}, expires {}", entry.standard->serial(),
+                           entry.standard->material(), entry.standard->certificate().date,
+                           entry.standard->certificate().expires));
+    } else {
+      log_warning("reference: " + describe(entry.standard.error()));
+    }
+  }
+}
+
+// SIGTERM and SIGINT are waited for, not handled: blocked here, before any thread is made, and taken one by one in
+// main.
+sigset_t block_end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return signals;
+}
+
+void wait_for_end(const sigset_t& signals) {
+  int signal = 0;
+  while (sigwait(&signals, &signal) != 0) {
+  }
+  log_info(fmt::format("ending: signal {}", signal));
+}
+
+// Everything that can be refused comes first, and changes nothing: options, files, port, store. Then the instrument.
+Result<void> serve(const Options& options, const sigset_t& signals) {
+  GONIO_TRY(limit_open_files());
+  const SystemClock clock;
+  const Result<Instrument> instrument = read_instrument(options.instrument_file);
+  if (!instrument) return failure(instrument.error());
+  Result<Listeners> listeners = Listeners::bind(options.address, options.port, options.socket_file);
+  if (!listeners) return failure(listeners.error());
+  const Result<std::unique_ptr<StoreWriter>> writer =
+      StoreWriter::open({.path = options.store_file, .boot_id = boot_id(), .version = GONIO_VERSION}, clock);
+  if (!writer) return failure(writer.error());
+  const ReferenceShelf shelf(options.references.empty() ? instrument->reference_directory : options.references);
+  log_references(shelf);
+
+  Publisher publisher;
+  Devices devices(*instrument, clock);
+  Engine engine({.instrument = *instrument, .store_file = options.store_file}, devices.all(), **writer, clock,
+                [&publisher](const EventRecord& event) { publisher(event); });
+  DaemonService service({.engine = engine,
+                         .instrument = *instrument,
+                         .shelf = shelf,
+                         .clock = clock,
+                         .store_file = options.store_file,
+                         .version = GONIO_VERSION});
+  const Result<api::StatusReport> status = service.status();
+  if (!status) return failure(status.error());
+  Result<std::unique_ptr<Server>> server =
+      Server::start(std::move(*listeners), {.last_event = status->last_event}, service, clock);
+  if (!server) return failure(server.error());
+  publisher.attach(**server);
+  const std::string url = fmt::format("http://{}:{}", options.address, (*server)->port());
+  log_info(fmt::format("instrument \"{}\" ({:.12}), store {}, REST API at {}", instrument->name, instrument->sha256,
+                       options.store_file, url));
+  if (!options.ready_file.empty()) GONIO_TRY(write_ready_file(options.ready_file, url));
+  wait_for_end(signals);
+  return {};
+}
+
+int run(const std::vector<std::string>& arguments) {
+  const auto options = read_options(arguments);
+  if (!options) {
+    (options.error().exit_code == 0 ? std::cout : std::cerr) << options.error().text;
+    return options.error().exit_code;
+  }
+  start_log(options->log_level);
+  Error error;
+  if (options->simulate) {
+    error = become(simulation_command(arguments, own_path()));
+  } else {
+    const Result<void> served = serve(*options, block_end_signals());
+    if (served) return 0;
+    error = served.error();
+  }
+  std::cerr << "goniod: " << explain(error) << '\n';
+  return traits(error.code).exit_code;
+}
+
+}  // namespace
+}  // namespace gonio::daemon
+
+int main(int argc, char** argv) {
+  return gonio::daemon::run({argv + 1, argv + argc});
+}

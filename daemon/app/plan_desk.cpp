@@ -1,0 +1,35 @@
+#include "daemon/app/plan_desk.h"
+
+#include "daemon/planner/planner.h"
+
+namespace gonio::daemon {
+namespace {
+
+Error at_the_plans_standard(Error error, const std::string& file) {
+  if (!error.where) error.where = InputLocation{file, 0, "reference.standard"};
+  return error;
+}
+
+}  // namespace
+
+Result<CheckedPlan> check_plan(const api::PlanSubmission& submission, const Instrument& instrument,
+                               const ReferenceShelf& shelf, UtcTime today) {
+  const std::string file = submission.plan_file.empty() ? "plan.toml" : submission.plan_file;
+  Result<api::Plan> plan = api::parse_plan(submission.plan, file);
+  if (!plan) return failure(plan.error());
+  Result<PlannedScan> planned = expand(*plan, instrument);
+  if (!planned) {
+    Error error = planned.error();
+    if (error.where && error.where->file.empty()) error.where->file = file;
+    return failure(std::move(error));
+  }
+  Result<ShelfEntry> reference = shelf.find(plan->reference_standard);
+  if (!reference) return failure(at_the_plans_standard(reference.error(), file));
+  GONIO_TRY(reference->standard->check_date(today));
+  for (const ScanPoint& point : planned->points) {
+    if (!point.blocked) GONIO_TRY(reference->standard->check_reach(point.wavelength, point.geometry));
+  }
+  return CheckedPlan{std::move(*plan), std::move(*planned), std::move(*reference)};
+}
+
+}  // namespace gonio::daemon
