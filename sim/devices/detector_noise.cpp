@@ -52,11 +52,16 @@ double distance(const Aperture& a, int x, int y) {
   return std::hypot(x - a.centre_x_px, y - a.centre_y_px);
 }
 
+// Row by row: the pixels of a chord.
 std::uint32_t pixels_inside(const DetectorSpec& spec) {
-  const Aperture aperture = aperture_of(spec);
+  const Aperture a = aperture_of(spec);
   std::uint32_t n = 0;
   for (int y = 0; y < spec.height_px; ++y) {
-    for (int x = 0; x < spec.width_px; ++x) n += distance(aperture, x, y) <= aperture.radius_px ? 1U : 0U;
+    const double half_chord2 = a.radius_px * a.radius_px - (y - a.centre_y_px) * (y - a.centre_y_px);
+    if (half_chord2 < 0.0) continue;
+    const double first = std::max(0.0, std::ceil(a.centre_x_px - std::sqrt(half_chord2)));
+    const double last = std::min(spec.width_px - 1.0, std::floor(a.centre_x_px + std::sqrt(half_chord2)));
+    n += static_cast<std::uint32_t>(std::max(0.0, last - first + 1.0));
   }
   return n;
 }

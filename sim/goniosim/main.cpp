@@ -41,7 +41,7 @@ struct Options {
 };
 
 int fail(const Error& error) {
-  fmt::print(stderr, "goniosim: {}\n", explain(error));
+  fmt::print(stderr, "{}\n", explain(error));
   return traits(error.code).exit_code;
 }
 

@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-std::uint64_t cell_of(double at_s, double cell_s) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at_s / cell_s)));
+// Cells before the scene's beginning have counters too.
+std::uint64_t counter_of(double cell) {
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(cell));
 }
 
 }  // namespace
@@ -45,11 +46,9 @@ double Lamp::flicker_mean(double from_s, double to_s) const {
   if (spec_.flicker == 0.0) return 0.0;
   const double cell = spec_.flicker_cell_s;
   double sum = 0.0;
-  for (double left = from_s; left < to_s;) {
-    const double right = std::min(to_s, (std::floor(left / cell) + 1.0) * cell);
-    if (right <= left) break;  // below the resolution of a double: nothing left to add
-    sum += (right - left) * Chance(seed_, Purpose::Flicker, cell_of(left, cell)).normal();
-    left = right;
+  for (double k = std::floor(from_s / cell); k * cell < to_s; k += 1.0) {
+    const double overlap = std::min(to_s, (k + 1.0) * cell) - std::max(from_s, k * cell);
+    if (overlap > 0.0) sum += overlap * Chance(seed_, Purpose::Flicker, counter_of(k)).normal();
   }
   return spec_.flicker * sum / (to_s - from_s);
 }
@@ -86,9 +85,10 @@ MonitorReading Lamp::monitor(double from_s, double to_s, std::uint64_t exposure)
 
 double Lamp::monitor_now(double at_s) const {
   const double sample_s = 1.0 / spec_.monitor_rate_hz;
-  const double noise = spec_.monitor_noise == 0.0
-                           ? 0.0
-                           : spec_.monitor_noise * Chance(seed_, Purpose::MonitorNow, cell_of(at_s, sample_s)).normal();
+  const double noise =
+      spec_.monitor_noise == 0.0
+          ? 0.0
+          : spec_.monitor_noise * Chance(seed_, Purpose::MonitorNow, counter_of(std::floor(at_s / sample_s))).normal();
   return mean(at_s, at_s + sample_s) * (1.0 + monitor_drift(at_s)) * (1.0 + noise);
 }
 

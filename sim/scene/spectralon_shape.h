@@ -37,7 +37,7 @@ struct ShapeGrid {
   std::vector<double> theta_deg;
   std::vector<double> phi_deg;
 };
-/// Fine enough for linear interpolation to lie within 3e-3 of the shape, 1e-3 below 60 deg.
+/// Fine enough for linear interpolation to lie within 4e-3 of the shape, 2e-3 below 60 deg.
 [[nodiscard]] ShapeGrid shape_grid();
 
 }  // namespace gonio::sim

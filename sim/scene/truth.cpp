@@ -61,8 +61,8 @@ Truth::Truth(const Scene& scene)
     amplitudes_[k] = reference_.modes[k].u * normal(Purpose::ShapeMode, k);
   }
   // The certificate fixes the integral, so the modes may not change it; what is left of it has its own uncertainty.
-  const double integral = integral_at_8_degrees(
-      [&](const Geometry& g) { return shape_(g) * mode_factor(g, reference_.modes, amplitudes_); });
+  const auto drawn_shape = [&](const Geometry& g) { return shape_(g) * mode_factor(g, reference_.modes, amplitudes_); };
+  const double integral = amplitudes_.empty() ? 1.0 : integral_at_8_degrees(drawn_shape);
   shape_scale_ = (1.0 + reference_.u_integral * normal(Purpose::Certificate, 1)) / integral;
 }
 

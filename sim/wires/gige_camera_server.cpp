@@ -76,7 +76,7 @@ GigeCameraServer::~GigeCameraServer() {
 }
 
 void GigeCameraServer::set_silent(bool on) {
-  is_silent_ = on;
+  if (is_silent_.exchange(on) && !on) ++power_ups_wanted_;
   wake(wake_up_);
 }
 
@@ -86,6 +86,13 @@ void GigeCameraServer::power_up() {
   stream_.clear();
   // The first exposure setting lies inside the limits by construction.
   (void)apply_settings();
+}
+
+void GigeCameraServer::power_up_if_wanted() {
+  const unsigned wanted = power_ups_wanted_;
+  if (power_ups_ == wanted) return;
+  power_ups_ = wanted;
+  power_up();
 }
 
 timespec GigeCameraServer::poll_timeout(std::optional<Instant> due) const {
@@ -101,15 +108,13 @@ void GigeCameraServer::run(const std::stop_token& stop) {
     const timespec timeout = poll_timeout(due);
     if (::ppoll(watched.data(), watched.size(), &timeout, nullptr) < 0) continue;
     drain(wake_up_);
+    power_up_if_wanted();  // before anything that was sent after it is read
     if ((watched[1].revents & POLLIN) != 0) receive();
     due = work(instrument_.clock().now());
   }
 }
 
 std::optional<Instant> GigeCameraServer::work(Instant now) {
-  const bool is_silent = is_silent_;
-  if (was_silent_ && !is_silent) power_up();
-  was_silent_ = is_silent;
   release_silent_controller(now);
   collect_frame();
   auto due = stream_.send_due(stream_socket_.get(), now);

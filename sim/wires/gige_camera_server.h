@@ -41,6 +41,7 @@ class GigeCameraServer {
   void run(const std::stop_token& stop);
   [[nodiscard]] timespec poll_timeout(std::optional<Instant> due) const;
   void power_up();
+  void power_up_if_wanted();
   std::optional<Instant> work(Instant now);
   void collect_frame();
   void release_silent_controller(Instant now);
@@ -69,7 +70,8 @@ class GigeCameraServer {
   Instant controller_seen_{};
   sockaddr_in sender_{};  ///< of the request being served
   std::atomic<bool> is_silent_{false};
-  bool was_silent_ = false;
+  std::atomic<unsigned> power_ups_wanted_{0};
+  unsigned power_ups_ = 0;
   std::jthread thread_;  // last: it uses all of the above
 };
 

@@ -1,0 +1,71 @@
+// The files that goniosim lays out, read by those who are to read them.
+#include "sim/scene/papers.h"
+
+#include <gtest/gtest.h>
+
+#include "calibration/reference_standard.h"
+#include "daemon/config/instrument.h"
+#include "sim/scene/spectralon_shape.h"
+#include "tests/sim/bench.h"
+
+namespace gonio::sim::test {
+namespace {
+
+Scene full_scene() {
+  Scene scene = quiet_scene();
+  scene.time_scale = 40.0;
+  scene.detector.read_noise_dn = 1.5;
+  scene.lamp.u_after_monitor = 0.0005;
+  scene.lamp.correlation_s = 3600.0;
+  scene.angles = {degrees(0.02), degrees(0.03), degrees(0.04), degrees(0.002)};
+  scene.reference.u_integral = 0.001;
+  scene.reference.modes = {{.kind = ModeKind::Limb, .u = 0.01},
+                           {.kind = ModeKind::Opposition, .u = 0.005, .width = degrees(10.0)}};
+  return scene;
+}
+
+TEST(InstrumentToml, IsReadByTheDaemonAndSaysEverythingInWallTime) {
+  const Scene scene = full_scene();
+  const std::string text = instrument_toml(scene, {.stage_port = 1234, .camera_address = "127.1.2.3"});
+
+  const auto read = daemon::parse_instrument(text, "instrument.toml");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  EXPECT_EQ(read->stage_address.port, 1234);
+  EXPECT_EQ(read->detector.address, "127.1.2.3");
+  EXPECT_TRUE(read->stage.registers == scene.stage.registers);
+  EXPECT_DOUBLE_EQ(read->stage.axis(stage::Axis::ThetaI).speed, 20.0 * 40.0);
+  EXPECT_DOUBLE_EQ(read->stage.axis(stage::Axis::ThetaI).acceleration, 40.0 * 1600.0);
+  EXPECT_NEAR(in_seconds(read->stage.axis(stage::Axis::ThetaI).settle), 0.1 / 40.0, 2e-9);
+  EXPECT_NEAR(in_seconds(read->detector.longest_exposure), 0.512 / 40.0, 2e-9);
+  EXPECT_DOUBLE_EQ(read->model.lamp.correlation_s, 90.0);
+  EXPECT_DOUBLE_EQ(read->model.detector.read_noise_dn, std::sqrt(2.25 + 1.0 / 12.0));
+  EXPECT_DOUBLE_EQ(in_degrees(read->model.angles.u_zero_phi_r), 0.04);
+}
+
+TEST(InstrumentToml, NamesExposuresThatTheCameraTakes) {
+  Bench bench(full_scene());
+  const auto read = daemon::parse_instrument(instrument_toml(full_scene(), {}), "instrument.toml");
+  ASSERT_TRUE(read.has_value());
+
+  for (Duration rung = read->detector.shortest_exposure; rung <= read->detector.longest_exposure; rung *= 2) {
+    EXPECT_TRUE(bench.camera.set_exposure(rung).has_value()) << rung.count();
+  }
+  EXPECT_TRUE(bench.camera.set_exposure(read->detector.longest_exposure).has_value());
+}
+
+TEST(ReferenceToml, IsReadByTheDaemonAsTheUndrawnStandard) {
+  const Scene scene = full_scene();
+
+  const auto read = calibration::ReferenceStandard::parse(reference_toml(scene.reference), "reference.toml");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  EXPECT_EQ(read->serial(), "SRT-99-020");
+  ASSERT_EQ(read->modes().size(), 2U);
+  EXPECT_DOUBLE_EQ(read->certificate().entries.front().u, 0.0025);
+  const Geometry node{degrees(45.0), degrees(0.0), degrees(30.0), degrees(90.0)};
+  EXPECT_NEAR(read->table().value(node), SpectralonShape()(node), 5e-6) << "five digits are written";
+}
+
+}  // namespace
+}  // namespace gonio::sim::test
