@@ -124,7 +124,7 @@ int print_truth(const Options& options) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "goniosim-XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / ("goniosim-" + std::string(6, 'X'))).string();
     if (::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
   }
   ~TemporaryFolder() {
