@@ -17,6 +17,7 @@ struct TomlReader::Document {
   toml::table root;
   std::string file;
   std::optional<Error> error;
+  const toml::table* lacking = nullptr;                                    ///< the table without the key of `error`
   std::map<const toml::table*, std::set<std::string, std::less<>>> asked;  ///< keys asked for, by table
   std::map<const toml::table*, std::string> paths;
 };
@@ -90,8 +91,34 @@ struct TomlReader::Access {
 
   static const toml::node* need(TomlReader& reader, std::string_view key) {
     const toml::node* node = find(reader, key);
-    if (node == nullptr) reader.fail(key, ErrorCode::MissingKey, "the key is missing");
-    return node;
+    if (node != nullptr) return node;
+    if (!reader.has_failed()) reader.document_->lacking = static_cast<const toml::table*>(reader.table_);
+    reader.fail(key, ErrorCode::MissingKey, "the key is missing");
+    return nullptr;
+  }
+
+  // `only`: of this table, or of all when null.
+  static Stray first_stray(const Document& document, const toml::table* only = nullptr) {
+    Stray first;
+    for (const auto& [table, asked] : document.asked) {
+      if (only != nullptr && only != table) continue;
+      for (const auto& [key, node] : *table) {
+        const int line = line_of(node);
+        if (asked.contains(key.str()) || line >= first.line) continue;
+        const auto path = document.paths.find(table);  // the root has none
+        first = Stray{line, path == document.paths.end() ? "" : path->second, std::string(key.str()), table};
+      }
+    }
+    return first;
+  }
+
+  // A key that is missing while its table has one that is not known: most likely the same one, misspelt.
+  static Error with_misspelling(const Document& document) {
+    Error error = *document.error;
+    if (document.lacking == nullptr) return error;
+    const Stray stray = first_stray(document, document.lacking);
+    if (stray.table != nullptr) error.limit = fmt::format("line {} has \"{}\": misspelt?", stray.line, stray.key);
+    return error;
   }
 
   static void wrong_kind(TomlReader& reader, std::string_view key, const toml::node& node, std::string_view wanted) {
@@ -364,15 +391,8 @@ bool TomlReader::has_failed() const {
 }
 
 Result<void> TomlReader::finish() const {
-  if (document_->error) return failure(*document_->error);
-  Stray first;
-  for (const auto& [table, asked] : document_->asked) {
-    for (const auto& [key, node] : *table) {
-      const int line = line_of(node);
-      if (asked.contains(key.str()) || line >= first.line) continue;
-      first = Stray{line, document_->paths[table], std::string(key.str()), table};
-    }
-  }
+  if (document_->error) return failure(Access::with_misspelling(*document_));
+  const Stray first = Access::first_stray(*document_);
   if (first.table == nullptr) return {};
   const std::string nearest = nearest_name(first.key, document_->asked[first.table]);
   return failure({.code = ErrorCode::UnknownKey,

@@ -64,6 +64,19 @@ TEST(TomlReader, RefusesATableThatNobodyAskedFor) {
   EXPECT_EQ(error.where, (InputLocation{"plan.toml", 1, "scam"}));
 }
 
+TEST(TomlReader, PointsFromAMissingKeyToTheStrangerInItsTable) {
+  TomlReader root = reader_of("[geometry]\ntheta_r_deg = [1]\ntheta_i_rad = [0]\n[other]\nx = 1\n");
+  TomlReader geometry = root.table("geometry");
+  geometry.numbers("theta_i_deg");
+  geometry.numbers("theta_r_deg");
+
+  const Error error = error_of(root);
+
+  EXPECT_EQ(error.code, ErrorCode::MissingKey);
+  EXPECT_EQ(error.where, (InputLocation{"plan.toml", 1, "geometry.theta_i_deg"}));
+  EXPECT_EQ(error.limit, "line 3 has \"theta_i_rad\": misspelt?");
+}
+
 TEST(TomlReader, NamesTheMissingKey) {
   TomlReader root = reader_of("[scan]\n");
   root.table("scan").text("name");
