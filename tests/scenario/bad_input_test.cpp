@@ -98,8 +98,17 @@ struct BadPlan {
 
 TEST_F(BadInput, InAPlanIsNamedWithItsPlaceAndItsLimit) {
   const std::vector<BadPlan> plans{
-      {"an unknown key", "theta_i_deg", "theta_j_deg", kUsage, {"plan.toml:5", "theta_j_deg", "theta_i_deg"}},
-      {"a wrong unit in the name", "theta_r_deg", "theta_r_rad", kUsage, {"plan.toml:6", "theta_r_rad", "theta_r_deg"}},
+      {"an unknown key", "theta_i_deg", "theta_j_deg", kUsage, {"plan.toml", "line 5", "theta_j_deg", "theta_i_deg"}},
+      {"a key too many",
+       "[568]",
+       "[568]\nwavelenth_nm = [480]",
+       kUsage,
+       {"plan.toml:9", "wavelenth_nm", "wavelength_nm"}},
+      {"a wrong unit in the name",
+       "theta_r_deg",
+       "theta_r_rad",
+       kUsage,
+       {"plan.toml", "line 6", "theta_r_rad", "theta_r_deg"}},
       {"a wavelength in micrometres",
        "[568]",
        "[0.568]",

@@ -58,6 +58,11 @@ void Bench::bring_up_daemon() {
   daemon_->wait_until_ready();
 }
 
+void Bench::home() {
+  const HttpAnswer answer = daemon_->post("stage/home");
+  if (answer.status / 100 != 2) throw std::runtime_error("the stage did not home: " + answer.body + "\n" + log());
+}
+
 int Bench::end_daemon() {
   const int code = daemon_->end();
   daemon_.reset();
@@ -84,8 +89,9 @@ std::string Bench::state_of(long id) const {
 }
 
 std::string Bench::holds_of(long id) const {
+  const json report = scan(id);
   std::string text;
-  for (const json& hold : scan(id).at("holds")) {
+  for (const json& hold : report.at("holds")) {
     text += hold.at("name").get<std::string>() + ": " + hold.at("reason").get<std::string>() + "\n";
   }
   return text;

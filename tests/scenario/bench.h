@@ -56,6 +56,8 @@ class Bench {
   void start_daemon();
   /// A new daemon on the same store, answering.
   void bring_up_daemon();
+  /// Finds the stage's home, as it must be before a move by hand.
+  void home();
   /// Ends the daemon in an orderly way; its exit code.
   int end_daemon();
 

@@ -51,9 +51,9 @@ TEST_F(Heartbeat, StopsAStageWhoseDaemonIsKilledInMidMove) {
 }
 
 TEST_F(Heartbeat, IsFedWhileTheDaemonLivesHoweverLongAMoveTakes) {
-  const std::string move = R"({"theta_i_deg":70.0})";
+  bench_.home();
 
-  const HttpAnswer answer = bench_.daemon().post("stage/move", move);
+  const HttpAnswer answer = bench_.daemon().post("stage/move", R"({"theta_i_deg":70.0})");
 
   EXPECT_EQ(answer.status / 100, 2) << answer.body << bench_.log();
   ASSERT_TRUE(eventually([&] { return !arm().moving && arm().position > kTarget - 0.1; }, kStepDeadline));

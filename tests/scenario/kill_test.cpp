@@ -31,7 +31,7 @@ constexpr Milliseconds kMeasuringWindow{200};
 const PlanOptions kPlan{.theta_i_deg = "[10, 25, 40, 55]",
                         .theta_r_deg = "{from = 0, to = 70, step = 10}",
                         .phi_r_deg = "[60, 100, 140, 180]",
-                        .target_snr = 100.0};
+                        .target_snr = 4000.0};
 constexpr long kPoints = 4 * (7 * 4 + 1);
 constexpr double kTimeScale = 20.0;
 

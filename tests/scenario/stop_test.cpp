@@ -94,6 +94,7 @@ TEST_F(Stop, IsOverOnlyAfterAResetAndAResume) {
 }
 
 TEST_F(Stop, IsAnsweredWhileAMoveByHandIsUnderWay) {
+  bench_.home();
   std::thread mover([&] { (void)bench_.daemon().post("stage/move", R"({"theta_i_deg":80.0})"); });
   EXPECT_TRUE(eventually([&] { return is_moving_an_arm(); }, kStepDeadline)) << bench_.log();
 
