@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "daemon/app/calibration_desk.h"
+#include "daemon/app/event_sentence.h"
 #include "daemon/app/log.h"
 
 namespace gonio::daemon {
@@ -17,6 +18,13 @@ constexpr std::size_t kMostScansToCompute = 256;
 void on_bug(const std::string& what) {
   log_error("a thread broke a promise and the daemon ends: " + what);
   std::abort();
+}
+
+// Whether the stage could not be seen at all; a refused or stopped motion is an answer like any other.
+bool is_of_the_link(const Error& error) {
+  const ErrorCode code = error.code;
+  return code == ErrorCode::Unreachable || code == ErrorCode::TimedOut || code == ErrorCode::BadReply ||
+         code == ErrorCode::WrongDevice;
 }
 
 bool ends_a_scan(const EventRecord& event) {
@@ -109,11 +117,15 @@ void Engine::on_stage(const StageAnswer& answer) {
     halt_.adopt(answer.state->epoch);  // after a restart of the daemon the stage knows the higher one
     stage_seen_.set(*answer.state);
   } else {
-    const std::optional<Error> before = stage_seen_.error();
-    if (!before || before->code != answer.state.error().code) log_warning(describe(answer.state.error()));
-    stage_seen_.set_error(answer.state.error());
+    note_stage_error(answer.state.error());
   }
   tell(answer);
+}
+
+void Engine::note_stage_error(const Error& error) {
+  const std::optional<Error> before = stage_seen_.error();
+  if (!before || before->code != error.code) log_warning(describe(error));  // once, not every second
+  if (is_of_the_link(error)) stage_seen_.set_error(error);
 }
 
 void Engine::on_detector(DetectorActor::Answer answer) {
@@ -154,13 +166,8 @@ void Engine::on_store(StoreActor::Answer answer) {
 }
 
 void Engine::publish(const EventRecord& event) {
-  const std::string sentence =
-      fmt::format("event {}: {}, scan {}, by {}: {}", event.number, event.kind, event.scan, event.who, event.json);
-  if (event.kind.starts_with("item-accepted")) {
-    log_debug(sentence);
-  } else {
-    log_info(sentence);
-  }
+  const bool is_of_an_item = event.kind.starts_with("item-");
+  is_of_an_item ? log_debug(event_sentence(event)) : log_info(event_sentence(event));
   on_event_(event);
   if (!ends_a_scan(event)) return;
   if (!calibrator_->post([this, scan = event.scan] { compute_brdf_of(scan); })) {

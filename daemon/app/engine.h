@@ -72,6 +72,7 @@ class Engine {
   };
 
   void on_stage(const StageAnswer& answer);
+  void note_stage_error(const Error& error);
   void on_detector(DetectorActor::Answer answer);
   void on_store(StoreActor::Answer answer);
   void on_halt(const HaltPathReport& report);

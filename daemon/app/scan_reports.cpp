@@ -68,6 +68,8 @@ api::ScanReport scan_report(const ScanInfo& info, Instant now) {
 }
 
 void add_progress(api::ScanReport& report, const SequencerStatus& status, Instant now) {
+  const std::optional<ScanState> state = scan_state_from_name(report.state);
+  if (!state || is_over(*state)) return;  // the store knows first
   if (!status.active || status.active->scan != report.id) return;
   const Progress& progress = *status.active;
   report.doing = status.doing;
