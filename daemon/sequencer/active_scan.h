@@ -34,6 +34,7 @@ struct Job {
   TimeParts time;
   std::optional<drivers::StageState> gate;  ///< after the exposure in hand, once the stage has answered
   std::optional<FrameSummary> frame;        ///< likewise the camera
+  std::optional<Error> gate_error;          ///< the gate was not seen in time; the camera's answer may say why
 };
 
 /// A scan that is not over, with all that the sequencer knows of it. The durable part is the store's; the rest is made

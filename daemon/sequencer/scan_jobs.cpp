@@ -128,6 +128,7 @@ void Sequencer::Impl::begin_exposure(Instant now) {
   job.asked = now;
   job.gate.reset();
   job.frame.reset();
+  job.gate_error.reset();
   job.gate_before = stage->gate.count;
   ask_stage(StageUse::Gate, WatchGate{.after = job.gate_before, .expected = exposure, .held = job.target});
   ask_detector(DetectorUse::Frame,
@@ -136,6 +137,11 @@ void Sequencer::Impl::begin_exposure(Instant now) {
 
 void Sequencer::Impl::on_gate(const Result<drivers::StageState>& state, Instant now) {
   if (!scan || !scan->job) return;
+  if (!state && state.error().code == ErrorCode::TimedOut && !scan->job->frame) {
+    // A camera that is gone opens no gate. Its own answer, due within its deadline, then names the cause.
+    scan->job->gate_error = state.error();
+    return;
+  }
   if (!state) return job_failed(state.error(), now);
   if (state->gate.count != scan->job->gate_before + 1) {
     return job_failed(Error{.code = ErrorCode::StaleData,
@@ -152,6 +158,7 @@ void Sequencer::Impl::on_gate(const Result<drivers::StageState>& state, Instant 
 void Sequencer::Impl::on_frame(const Result<FrameSummary>& frame, Instant now) {
   if (!scan || !scan->job) return;
   if (!frame) return job_failed(frame.error(), now);
+  if (scan->job->gate_error) return job_failed(Error(*scan->job->gate_error), now);
   scan->job->frame = *frame;
   join_exposure(now);
 }

@@ -247,7 +247,7 @@ FrameSummary ScanRig::frame_of(const drivers::ExposureSettings& settings) {
 
 void ScanRig::take_frame(const TakeFrame& take) {
   if (const auto error = world.frame_error()) {
-    tell(milliseconds(100), FrameAnswer{take.ticket, failure(*error)});
+    tell(world.frame_error_after, FrameAnswer{take.ticket, failure(*error)});
     if (!watched_) return;
     const Error late{.code = ErrorCode::TimedOut, .device = "stage", .tried = "watch the gate"};
     return tell(milliseconds(500), StageAnswer{std::exchange(watched_, std::nullopt)->ticket, failure(late)});

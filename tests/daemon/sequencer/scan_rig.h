@@ -27,6 +27,7 @@ struct ScriptedInstrument {
   std::function<double(double theta_r_deg, bool is_reference)> rate_dn_per_s = [](double, bool) { return 300'000.0; };
   std::function<std::optional<Error>(const MoveTo&)> move_error = [](const MoveTo&) { return std::nullopt; };
   std::function<std::optional<Error>()> frame_error = [] { return std::nullopt; };
+  Duration frame_error_after = std::chrono::milliseconds(100);  ///< the gate's error comes after 500 ms
   std::function<std::optional<Error>()> camera_open_error = [] { return std::nullopt; };
   double monitor = 1.0;
 };

@@ -339,6 +339,18 @@ TEST_F(SequencerScan, ALostCameraHoldsWithTheReasonAndGoesOnWhenItIsBack) {
   EXPECT_EQ(accepted(), 6);
 }
 
+TEST_F(SequencerScan, ACameraThatIsSlowToFailIsNamedAndNotTheGateThatNeverOpened) {
+  const ScanId id = rig.submit(plan_of_three());
+  run_to_item(1);
+  rig.world.frame_error_after = std::chrono::seconds(4);
+  rig.world.frame_error = [] { return Error{.code = ErrorCode::Unreachable, .device = "detector", .tried = "frame"}; };
+
+  rig.run_to_rest();
+
+  ASSERT_EQ(rig.state_of(id), ScanState::Holding);
+  EXPECT_NE(rig.status().active->holds[0].reason.find("detector"), std::string::npos);
+}
+
 TEST_F(SequencerScan, FramesThatKeepTimingOutHoldInsteadOfSkippingEverything) {
   const ScanId id = rig.submit(plan_of_three());
   run_to_item(1);
