@@ -27,7 +27,7 @@ std::string plan_text(const PlanOptions& options) {
        << "[reading]\ntarget_snr = " << options.target_snr << "\nmax_time_s = 0.5\n"
        << "[reference]\nstandard = \"SRT-99-020\"\nmode = \"same-geometry\"\nblock_s = 20\n"
        << "[visits]\ndark_s = 10\n[order]\nstrategy = \"" << options.strategy << "\"\n"
-       << "[on_error]\nitem = \"retry 2, then skip\"\n[on_restart]\npolicy = \"resume\"\n";
+       << "[on_error]\nitem = \"" << options.on_item_error << "\"\n[on_restart]\npolicy = \"resume\"\n";
   return text.str();
 }
 

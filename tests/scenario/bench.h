@@ -31,6 +31,7 @@ struct PlanOptions {
   std::string phi_r_deg = "[0, 90, 180]";
   std::string strategy = "fastest";
   double target_snr = 100.0;
+  std::string on_item_error = "retry 2, then skip";
 };
 [[nodiscard]] std::string plan_text(const PlanOptions& options);
 

@@ -11,9 +11,12 @@ namespace gonio::test {
 namespace {
 
 // Long enough that a fault comes into the middle of it: 24 geometries, none of them in the shadow, on sample and
-// reference.
+// reference. The plan would skip an item at its first failure: a lost device must hold all the same.
 const SceneOptions kScene{.time_scale = 10.0};
-const PlanOptions kPlan{.theta_i_deg = "[15, 30, 45, 60]", .theta_r_deg = "[10, 40, 70]", .phi_r_deg = "[90, 180]"};
+const PlanOptions kPlan{.theta_i_deg = "[15, 30, 45, 60]",
+                        .theta_r_deg = "[10, 40, 70]",
+                        .phi_r_deg = "[90, 180]",
+                        .on_item_error = "skip"};
 constexpr long kItems = 2 * 4 * 6;
 
 class DeviceLoss : public testing::Test {
