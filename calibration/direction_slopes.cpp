@@ -12,9 +12,9 @@
 namespace gonio::calibration {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kFarthest = 0.25 * kPi;  // a polynomial over more than 45 deg says nothing of a slope
-constexpr double kSamePlace = 2e-4;       // 0.01 deg: closer neighbours give noise over nothing
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kFarthest = 0.25 * kHalfTurn;  // a polynomial over more than 45 deg says nothing of a slope
+constexpr double kSamePlace = 2e-4;             // 0.01 deg: closer neighbours give noise over nothing
 constexpr std::size_t kNeighboursAtMost = 4;
 
 std::size_t index_of(DirectionAxis axis) {
@@ -114,10 +114,10 @@ std::map<LineKey, Line> phi_lines(std::span<const SlopePoint> points, bool isotr
     line.push_back({d, n, sign, false});
     if (isotropic) {
       line.push_back({-d, n, -sign, true});
-      line.push_back({2.0 * kPi - d, n, -sign, true});
+      line.push_back({2.0 * kHalfTurn - d, n, -sign, true});
     } else {
-      line.push_back({d + 2.0 * kPi, n, sign, true});
-      line.push_back({d - 2.0 * kPi, n, sign, true});
+      line.push_back({d + 2.0 * kHalfTurn, n, sign, true});
+      line.push_back({d - 2.0 * kHalfTurn, n, sign, true});
     }
   }
   return lines;

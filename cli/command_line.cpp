@@ -21,8 +21,9 @@ class CommandLine {
     app_.set_version_flag("--version", "gonioctl 0.1.0");
     app_.add_option("--connect", wanted.connect, "the daemon: http://ADDRESS:PORT or unix:PATH ($GONIOD_CONNECT)")
         ->capture_default_str();
-    app_.add_option("-o,--output", wanted.format, "table, json, jsonl or csv")
-        ->transform(CLI::CheckedTransformer(kFormats, CLI::ignore_case));
+    app_.add_option("-o,--output", wanted.format, "how answers are printed (table)")
+        ->transform(CLI::CheckedTransformer(kFormats, CLI::ignore_case))
+        ->option_text("table|json|jsonl|csv");
     leaf(app_, "status", "what the instrument does", Verb::Status);
     leaf(app_, "stop", "STOP: halt all motion now, in every state", Verb::Stop);
     add_stage();

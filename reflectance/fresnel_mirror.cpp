@@ -5,7 +5,7 @@
 namespace gonio::reflectance {
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kFresnelMirrorParameters{
     ParameterSpec{
         .name = "refractive_index", .least = 0.1, .most = 1e12, .meaning = "of the far side over the near side"},
 };
@@ -13,7 +13,7 @@ constexpr std::array kParameters{
 }  // namespace
 
 constinit const ModelSpec FresnelMirror::kSpec{"fresnel_mirror", "flat, clear interface: mirror part only",
-                                               kParameters};
+                                               kFresnelMirrorParameters};
 
 Result<FresnelMirror> FresnelMirror::make(FresnelMirrorParameters p) {
   GONIO_TRY(check_values(kSpec, std::array{p.refractive_index}));

@@ -6,15 +6,16 @@
 namespace gonio::reflectance {
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kGlintParameters{
     ParameterSpec{.name = "slope_variance", .least = 1e-6, .most = 1.0, .meaning = "of both slope components together"},
     ParameterSpec{.name = "refractive_index", .least = 1.0, .most = 1e12, .meaning = "below over above the surface"},
 };
 
 }  // namespace
 
-constinit const ModelSpec Glint::kSpec{"glint", "facets with Gaussian slopes, no shadowing", kParameters};
-constinit const ModelSpec Glint::kSpecSmith{"glint_smith", "facets with Gaussian slopes, Smith shadowing", kParameters};
+constinit const ModelSpec Glint::kSpec{"glint", "facets with Gaussian slopes, no shadowing", kGlintParameters};
+constinit const ModelSpec Glint::kSpecSmith{"glint_smith", "facets with Gaussian slopes, Smith shadowing",
+                                            kGlintParameters};
 
 double cox_munk_slope_variance(double wind_m_per_s) {
   return (3.0 + 5.12 * wind_m_per_s) / 1000.0;

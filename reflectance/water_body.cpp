@@ -6,14 +6,14 @@
 namespace gonio::reflectance {
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kWaterBodyParameters{
     ParameterSpec{.name = "rho_w", .least = 0.0, .most = 1.0, .meaning = "share of light sent up below the surface"},
     ParameterSpec{.name = "refractive_index", .least = 1.0, .most = 4.0, .meaning = "of the water"},
 };
 
 }  // namespace
 
-constinit const ModelSpec WaterBody::kSpec{"water_body", "light from below a flat water surface", kParameters};
+constinit const ModelSpec WaterBody::kSpec{"water_body", "light from below a flat water surface", kWaterBodyParameters};
 
 WaterBody::WaterBody(WaterBodyParameters p) : p_(p), entering_(1.0 - fresnel_albedo(p.refractive_index)) {
   const double n2 = p.refractive_index * p.refractive_index;

@@ -8,12 +8,12 @@ namespace gonio::daemon {
 namespace {
 
 constexpr int kFetchedAtOnce = 200;
-constexpr std::size_t kMostWaiting = 1024;  // more than there can be connections
+constexpr std::size_t kMostReadsWaiting = 1024;  // more than there can be connections
 
 }  // namespace
 
 EventHub::EventHub(Fetch fetch, std::int64_t last, std::size_t client_limit_bytes)
-    : fetch_(std::move(fetch)), client_limit_bytes_(client_limit_bytes), last_(last), worker_(kMostWaiting) {}
+    : fetch_(std::move(fetch)), client_limit_bytes_(client_limit_bytes), last_(last), worker_(kMostReadsWaiting) {}
 
 void EventHub::publish(const api::Event& event) {
   const auto text = std::make_shared<const std::string>(api::to_event_stream(event));

@@ -11,7 +11,7 @@ namespace {
 
 using api::RouteId;
 
-constexpr std::size_t kMostWaiting = 64;
+constexpr std::size_t kMostRequestsWaiting = 64;
 constexpr int kPage = 1000;
 
 HttpResponse success(std::string_view content_type, std::string body) {
@@ -82,7 +82,7 @@ Result<Words> scan_words(RouteId id, const std::string& body) {
 }  // namespace
 
 Gateway::Gateway(Service& service, const EventHub& hub, std::uint16_t port)
-    : service_(service), hub_(hub), guard_(port), quick_(kMostWaiting), slow_(kMostWaiting) {}
+    : service_(service), hub_(hub), guard_(port), quick_(kMostRequestsWaiting), slow_(kMostRequestsWaiting) {}
 
 std::optional<HttpResponse> Gateway::refusal(const HttpRequest& request, const RouteMatch& match) const {
   if (match.route == nullptr) return no_such_route(request, match);
@@ -103,7 +103,7 @@ void Gateway::answer(HttpRequest request, const RouteMatch& match, const std::sh
   exchange->answer(problem({.code = ErrorCode::Busy,
                             .device = "http",
                             .tried = "take on a request",
-                            .seen = fmt::format("{} requests wait already", kMostWaiting),
+                            .seen = fmt::format("{} requests wait already", kMostRequestsWaiting),
                             .limit = {}}));
 }
 

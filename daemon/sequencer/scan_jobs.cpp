@@ -16,7 +16,6 @@ namespace {
 using calibration::Target;
 using stage::Axis;
 
-constexpr const char* kDaemon = "goniod";
 constexpr int kFewestDarkFrames = 4;
 constexpr int kMostDarkFrames = 16;
 

@@ -12,7 +12,6 @@ namespace gonio::daemon {
 
 namespace {
 
-constexpr const char* kDaemon = "goniod";
 // Between two looks at a stage that still moves, or at a gate that is still open, when nothing of ours is under way.
 constexpr Duration kLookAgain = std::chrono::milliseconds(50);
 

@@ -13,6 +13,9 @@
 
 namespace gonio::daemon {
 
+/// Who, of what nobody asked for.
+inline constexpr const char* kDaemon = "goniod";
+
 /// The inside of the sequencer, in four sources: sequencer.cpp (channels and answers), scan_life.cpp (states and what
 /// comes next), scan_jobs.cpp (moves, exposures, results), scan_commands.cpp (what clients ask).
 struct Sequencer::Impl {

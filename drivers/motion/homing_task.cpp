@@ -7,7 +7,7 @@
 namespace gonio::drivers {
 namespace {
 
-constexpr Duration kPoll = std::chrono::milliseconds(20);
+constexpr Duration kHomingPoll = std::chrono::milliseconds(20);
 
 bool is_home(const AxisState& axis) {
   return axis.homed && !axis.moving;
@@ -23,7 +23,7 @@ Result<MotionProgress> HomingTask::look(const StageState& seen, Instant now) {
   if (!accepted) return failure(accepted.error());
   const auto astray = std::ranges::find_if_not(seen.axes, is_home);
   if (*accepted && seen.homed && !seen.moving && astray == seen.axes.end()) return MotionProgress{true, now};
-  if (now < deadline_) return MotionProgress{false, std::min(now + kPoll, deadline_)};
+  if (now < deadline_) return MotionProgress{false, std::min(now + kHomingPoll, deadline_)};
   std::string where = "the stage does not say that it is homed";
   if (astray != seen.axes.end()) {
     const stage::Axis axis = stage::kAllAxes[static_cast<std::size_t>(astray - seen.axes.begin())];

@@ -10,7 +10,7 @@
 namespace gonio::drivers {
 namespace {
 
-constexpr Duration kPoll = std::chrono::milliseconds(2);
+constexpr Duration kShutterPoll = std::chrono::milliseconds(2);
 
 std::string_view state_name(stage::ShutterState state) {
   constexpr std::array<std::string_view, 3> kNames{"closed", "open", "moving"};
@@ -42,7 +42,7 @@ Result<MotionProgress> ShutterTask::look(const StageState& seen, Instant now) {
                     .limit = fmt::format("it was {} when the command was given", boot_counter_)});
   }
   if (seen.source_shutter == source_ && seen.detector_shutter == detector_) return MotionProgress{true, now};
-  if (now < deadline_) return MotionProgress{false, std::min(now + kPoll, deadline_)};
+  if (now < deadline_) return MotionProgress{false, std::min(now + kShutterPoll, deadline_)};
   return failure({.code = ErrorCode::MotionLate,
                   .device = "stage",
                   .tried = tried,

@@ -14,19 +14,19 @@ using stage::Register;
 
 namespace {
 
-constexpr std::array kWritable{Field::Token,
-                               Field::HeartbeatTimeoutMs,
-                               Field::Heartbeat,
-                               Field::HaltEpoch,
-                               Field::HaltKey,
-                               Field::ResetEpoch,
-                               Field::ResetKey,
-                               Field::MotionEpoch,
-                               Field::SourceShutterCommand,
-                               Field::DetectorShutterCommand,
-                               Field::MotionToken,
-                               Field::MotionMask,
-                               Field::MotionCommand};
+constexpr std::array kWritableFields{Field::Token,
+                                     Field::HeartbeatTimeoutMs,
+                                     Field::Heartbeat,
+                                     Field::HaltEpoch,
+                                     Field::HaltKey,
+                                     Field::ResetEpoch,
+                                     Field::ResetKey,
+                                     Field::MotionEpoch,
+                                     Field::SourceShutterCommand,
+                                     Field::DetectorShutterCommand,
+                                     Field::MotionToken,
+                                     Field::MotionMask,
+                                     Field::MotionCommand};
 
 void mark(std::vector<bool>& marks, const Register& reg) {
   for (unsigned k = 0; k < reg.words; ++k) marks[std::size_t{reg.address} + k] = true;
@@ -57,7 +57,7 @@ StageFace::StageFace(Instrument& instrument) : instrument_(instrument), map_(ins
   for (const auto& axis : map_.axes) {
     for (const Register& reg : axis) mark(is_register_, reg);
   }
-  for (const Field field : kWritable) mark(is_writable_, map_.at(field));
+  for (const Field field : kWritableFields) mark(is_writable_, map_.at(field));
   for (const Axis axis : stage::kAllAxes) mark(is_writable_, map_.at(axis, AxisField::Target));
 }
 

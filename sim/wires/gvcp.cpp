@@ -7,18 +7,18 @@ namespace {
 
 constexpr std::uint8_t kKey = 0x42;
 constexpr std::uint8_t kAcknowledgeFlag = 0x01;
-constexpr std::size_t kHeader = 8;
+constexpr std::size_t kGvcpHeader = 8;
 
 }  // namespace
 
 std::optional<GvcpRequest> parse_gvcp(std::span<const std::uint8_t> datagram) {
-  if (datagram.size() < kHeader || datagram[0] != kKey) return std::nullopt;
+  if (datagram.size() < kGvcpHeader || datagram[0] != kKey) return std::nullopt;
   const std::size_t length = get16(datagram, 4);
-  if (datagram.size() != kHeader + length) return std::nullopt;
+  if (datagram.size() != kGvcpHeader + length) return std::nullopt;
   return GvcpRequest{.command = static_cast<GvcpCommand>(get16(datagram, 2)),
                      .wants_acknowledge = (datagram[1] & kAcknowledgeFlag) != 0,
                      .id = get16(datagram, 6),
-                     .payload = datagram.subspan(kHeader)};
+                     .payload = datagram.subspan(kGvcpHeader)};
 }
 
 std::vector<std::uint8_t> gvcp_acknowledge(const GvcpRequest& request, GvcpStatus status,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostClients = 64;
 constexpr std::size_t kMostUnread = 64 * 1024;  // of a client that asks and does not read
-constexpr std::size_t kHeader = 6;              // of the MBAP header, up to and with the length
+constexpr std::size_t kMbapHeader = 6;          // of the MBAP header, up to and with the length
 constexpr std::size_t kShortest = 8;            // unit and function code
 constexpr std::size_t kLongest = 260;
 
@@ -94,9 +94,9 @@ void ModbusServer::receive(Client& client) {
 
 void ModbusServer::take_requests(Client& client) {
   std::size_t at = 0;
-  while (client.received.size() - at >= kHeader) {
+  while (client.received.size() - at >= kMbapHeader) {
     const auto rest = std::span(client.received).subspan(at);
-    const std::size_t length = kHeader + static_cast<std::size_t>(rest[4] << 8U | rest[5]);
+    const std::size_t length = kMbapHeader + static_cast<std::size_t>(rest[4] << 8U | rest[5]);
     const bool is_modbus = rest[2] == 0 && rest[3] == 0;
     if (!is_modbus || length < kShortest || length > kLongest) {
       client.is_gone = true;  // out of step: there is no way back into it
