@@ -152,7 +152,7 @@ void Sequencer::Impl::run_verb(const Command& c, const SkipItemInHand& skip, Ins
   const ItemKey item = scan->job->item;
   drop_job(now);
   StoreTransaction transaction{.at = now};
-  for (const ItemKey& gone : scan->items.skip(item)) {
+  for (const ItemKey& gone : scan->items.give_up(item)) {
     const SkipItem record{.scan = scan->id, .item = gone, .who = c.who, .reason = "skipped by hand"};
     transaction.writes.emplace_back(record);
     transaction.events.push_back(event_skipped(record));

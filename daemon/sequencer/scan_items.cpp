@@ -56,7 +56,7 @@ void ScanItems::accept(const ItemKey& item, Instant now) {
   block_.push_back(item.point);
 }
 
-std::vector<ItemKey> ScanItems::skip(const ItemKey& item) {
+std::vector<ItemKey> ScanItems::give_up(const ItemKey& item) {
   std::vector<ItemKey> gone{item};
   decide(item, Fate::Skipped);
   const ItemKey partner{item.point, Target::Reference};

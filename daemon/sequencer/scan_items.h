@@ -23,7 +23,7 @@ class ScanItems {
   [[nodiscard]] std::optional<ItemKey> next(Instant now);
   void accept(const ItemKey& item, Instant now);
   /// Skipping a sample item skips its partner too: what is skipped, to be recorded.
-  std::vector<ItemKey> skip(const ItemKey& item);
+  std::vector<ItemKey> give_up(const ItemKey& item);
 
   [[nodiscard]] std::int64_t total() const { return 2 * static_cast<std::int64_t>(order_.size()); }
   [[nodiscard]] std::int64_t accepted() const { return accepted_; }

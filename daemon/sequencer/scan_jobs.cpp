@@ -301,7 +301,7 @@ void Sequencer::Impl::item_failed(const Error& error, Instant now) {
 void Sequencer::Impl::give_up_item(const ItemKey& item, const Error& error, StoreTransaction transaction, Instant now) {
   const std::string reason = describe(error);
   if (scan->policy.on_item_error == api::OnItemError::Skip) {
-    for (const ItemKey& gone : scan->items.skip(item)) {
+    for (const ItemKey& gone : scan->items.give_up(item)) {
       const SkipItem skip{.scan = scan->id, .item = gone, .who = kDaemon, .reason = reason};
       transaction.writes.emplace_back(skip);
       transaction.events.push_back(event_skipped(skip));

@@ -32,7 +32,7 @@ struct ReferenceSpec {
   std::string serial = "SRT-99-020";
   std::string material = "Spectralon 99 %";
   std::string certificate_date = "2025-11-03";
-  std::string expires = "2027-11-03";
+  std::string expires = "2099-12-31";
   double coverage_factor = 2.0;
   std::vector<CertificateEntry> certificate;  ///< ascending wavelengths
   double u_integral = 0.0;                    ///< relative, of the shape's integral

@@ -69,7 +69,7 @@ TEST(ScanItems, ARestartClosesTheOpenBlockAndGoesOnWithTheNextUnmeasured) {
 TEST(ScanItems, SkippingASampleSkipsItsPartner) {
   ScanItems items(2, {0, 1}, seconds(100), {}, {});
 
-  const auto gone = items.skip({0, Target::Sample});
+  const auto gone = items.give_up({0, Target::Sample});
 
   EXPECT_EQ(gone, (std::vector<ItemKey>{{0, Target::Sample}, {0, Target::Reference}}));
   EXPECT_EQ(take(items, 9).size(), 2U);
@@ -80,7 +80,7 @@ TEST(ScanItems, SkippingASampleSkipsItsPartner) {
 TEST(ScanItems, SkippingAReferenceSkipsItAlone) {
   ScanItems items(1, {0}, seconds(100), {{0, Target::Sample}}, {});
 
-  EXPECT_EQ(items.skip({0, Target::Reference}).size(), 1U);
+  EXPECT_EQ(items.give_up({0, Target::Reference}).size(), 1U);
   EXPECT_FALSE(items.next(kStart));
 }
 
