@@ -24,10 +24,13 @@ struct Sequencer::Impl {
   // ---- channels (sequencer.cpp) ----
   enum class StageUse : std::uint8_t { Dropped, Look, Home, Reset, Move, Gate, Shut, HandLook, HandDone };
   enum class DetectorUse : std::uint8_t { Dropped, Prepare, Frame };
-  template <class Use>
-  struct Call {
+  struct StageCall {
     Ticket ticket = 0;
-    Use use{};
+    StageUse use = StageUse::Dropped;
+  };
+  struct DetectorCall {
+    Ticket ticket = 0;
+    DetectorUse use = DetectorUse::Dropped;
   };
   struct PendingCommit {
     std::function<void(const CommitReceipt&, Instant)> done;
@@ -126,8 +129,8 @@ struct Sequencer::Impl {
   std::vector<Request> requests;
   std::vector<CommandReply> replies;
   Ticket last_ticket = 0;
-  std::optional<Call<StageUse>> stage_call;
-  std::optional<Call<DetectorUse>> detector_call;
+  std::optional<StageCall> stage_call;
+  std::optional<DetectorCall> detector_call;
   std::map<Ticket, PendingCommit> commits;
   std::optional<Ticket> load_call;
   std::optional<drivers::StageState> stage;  ///< as last seen
