@@ -35,7 +35,9 @@ class Stop : public testing::Test {
     return scan;
   }
 
-  void expect_it_stays_where_it_is() {
+  // A halted axis brakes, it does not stand at once.
+  void expect_it_stands_and_stays() {
+    EXPECT_TRUE(eventually([&] { return !bench_.simulator().stage().moving; }, kStepDeadline));
     const SeenStage before = bench_.simulator().stage();
     // Ten answers of the daemon later nothing has changed: the sequencer has had its turns.
     for (int i = 0; i < 10; ++i) (void)bench_.get("status");
@@ -66,10 +68,9 @@ TEST_F(Stop, HaltsAScanInMidMoveAndKeepsItHalted) {
 
   EXPECT_EQ(answer.status, 200) << answer.body;
   EXPECT_TRUE(eventually([&] { return bench_.simulator().stage().halted; }, kStepDeadline));
-  EXPECT_TRUE(eventually([&] { return !bench_.simulator().stage().moving; }, kStepDeadline));
   EXPECT_EQ(bench_.wait_for_state(scan, {"holding", "done"}), "holding");
   EXPECT_EQ(count_of(all_events(bench_, bench_.daemon().port()), "stop"), 1);
-  expect_it_stays_where_it_is();
+  expect_it_stands_and_stays();
 }
 
 TEST_F(Stop, IsOverOnlyAfterAResetAndAResume) {
@@ -83,7 +84,7 @@ TEST_F(Stop, IsOverOnlyAfterAResetAndAResume) {
 
   EXPECT_NE(too_early.exit_code, 0) << "a scan cannot resume on a stage that stands stopped";
   EXPECT_NE(too_early.errors.find("reset"), std::string::npos) << too_early.errors;
-  expect_it_stays_where_it_is();
+  expect_it_stands_and_stays();
 
   const Finished reset = bench_.gonioctl({"stage", "reset"});
   EXPECT_EQ(reset.exit_code, 0) << reset.errors;
