@@ -121,11 +121,18 @@ TEST_P(EndToEnd, AgreesWithTheTruthThatOnlyTheSimulatorKnows) {
 TEST_P(EndToEnd, TellsEveryChangeOnceInOrder) {
   const long scan = measure();
 
-  const std::vector<ServerEvent> events = all_events(bench_, bench_.daemon().port());
+  // The BRDF is computed aside, after the scan is done; its event is the last.
+  std::vector<ServerEvent> events;
+  const auto has_brdf = [&] {
+    events = all_events(bench_, bench_.daemon().port());
+    return count_of(events, "brdf-computed") > 0;
+  };
+  EXPECT_TRUE(eventually(has_brdf, kStepDeadline)) << bench_.log();
 
   EXPECT_TRUE(is_gapless_from(1, events));
   EXPECT_EQ(count_of(events, "scan-submitted"), 1);
   EXPECT_EQ(count_of(events, "scan-done"), 1);
+  EXPECT_EQ(count_of(events, "brdf-computed"), 1);
   EXPECT_GE(count_of(events, "dark-visit"), 2) << "one before and one after";
   const std::vector<std::string> items = accepted_items(events);
   EXPECT_EQ(items.size(), static_cast<std::size_t>(2 * (kPoints - kBlocked)));
