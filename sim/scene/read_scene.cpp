@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "base/toml_reader.h"
-#include "reflectance/make_surface.h"
+#include "reflectance/surface/make_surface.h"
 #include "sim/scene/read_sections.h"
 
 namespace gonio::sim {

@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "protocol/stage/axis.h"
 #include "protocol/stage/register_map.h"
-#include "reflectance/surface.h"
+#include "reflectance/surface/surface.h"
 #include "sim/scene/reference_spec.h"
 
 namespace gonio::sim {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "reflectance/direction.h"
-#include "reflectance/hemisphere_integral.h"
+#include "reflectance/direction/direction.h"
+#include "reflectance/integral/hemisphere_integral.h"
 
 namespace gonio::sim {
 namespace {

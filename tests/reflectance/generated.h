@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "reflectance/direction.h"
+#include "reflectance/direction/direction.h"
 
 namespace gonio::reflectance {
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "generated.h"
-#include "printed.h"
-#include "reflectance/compensated_sum.h"
-#include "reflectance/directional_reflectance.h"
-#include "reflectance/fresnel.h"
-#include "reflectance/hapke.h"
-#include "reflectance/hemisphere_integral.h"
-#include "reflectance/henyey_greenstein.h"
-#include "surfaces.h"
+#include "reflectance/integral/compensated_sum.h"
+#include "reflectance/integral/directional_reflectance.h"
+#include "reflectance/integral/hemisphere_integral.h"
+#include "reflectance/surface/fresnel.h"
+#include "reflectance/surface/hapke.h"
+#include "reflectance/surface/henyey_greenstein.h"
+#include "tests/reflectance/generated.h"
+#include "tests/reflectance/printed.h"
+#include "tests/reflectance/surfaces.h"
 
 namespace gonio::reflectance {
 namespace {

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reflectance/make_surface.h"
+#include "reflectance/surface/make_surface.h"
 
 namespace gonio::reflectance {
 

@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "protocol/stage/register_map.h"
-#include "reflectance/make_surface.h"
+#include "reflectance/surface/make_surface.h"
 #include "sim/devices/camera_model.h"
 #include "sim/devices/instrument.h"
 #include "sim/devices/stage_face.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "reflectance/direction.h"
+#include "reflectance/direction/direction.h"
 #include "tests/sim/bench.h"
 
 namespace gonio::sim::test {
