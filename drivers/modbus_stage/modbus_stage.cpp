@@ -37,8 +37,8 @@ Error in_words_of(Error error, const std::string& tried) {
   return error;
 }
 
-bool is_worth_another_try(const Error& error) {
-  return error.code == ErrorCode::TimedOut || error.code == ErrorCode::Unreachable || error.code == ErrorCode::BadReply;
+bool is_silence(const Error& error) {
+  return error.code == ErrorCode::TimedOut || error.code == ErrorCode::Unreachable;
 }
 
 bool fits(const stage::Register& reg, std::int64_t value) {
@@ -69,6 +69,33 @@ Result<void> check_limits(const StageConfig& config, const MotionTarget& target)
 ModbusStage::ModbusStage(ModbusLink& link, const StageConfig& config, const Clock& clock)
     : link_(link), config_(config), clock_(clock) {}
 
+template <class Exchange>
+Result<void> ModbusStage::talk(Exchange exchange) {
+  const Instant began = clock_.now();
+  Result<void> done = exchange();
+  if (done || !is_silence(done.error())) {
+    silent_since_.reset();
+    return done;
+  }
+  if (!silent_since_) silent_since_ = began;
+  if (!has_been_silent_too_long()) return done;
+  Error error = std::move(done).error();
+  error.code = ErrorCode::Unreachable;
+  error.seen += fmt::format("; no answer to anything for {:.1f} s", in_seconds(clock_.now() - *silent_since_));
+  error.limit = fmt::format("heartbeat timeout {:.1f} s, after which the stage stops by itself",
+                            in_seconds(config_.heartbeat_timeout));
+  return failure(std::move(error));
+}
+
+bool ModbusStage::has_been_silent_too_long() const {
+  return silent_since_ && clock_.now() - *silent_since_ >= config_.heartbeat_timeout;
+}
+
+bool ModbusStage::is_worth_another_try(const Error& error) const {
+  if (error.code == ErrorCode::BadReply) return true;
+  return is_silence(error) && !has_been_silent_too_long();
+}
+
 Result<StageState> ModbusStage::read_state() {
   Result<StageState> state = look_once();
   for (int tries = 1; !state && is_worth_another_try(state.error()) && tries < kTries; ++tries) state = look_once();
@@ -82,7 +109,8 @@ Result<StageState> ModbusStage::look_once() {
   CommandWords written(config_.registers, {token.address, token.words});
   written.set(Field::Token, ++token_);
   std::vector<std::uint16_t> words(block.count);
-  if (auto done = link_.write_and_read(token.address, written.take(), block.first, words); !done) {
+  auto done = talk([&] { return link_.write_and_read(token.address, written.take(), block.first, words); });
+  if (!done) {
     return failure(in_words_of(std::move(done).error(), tried));
   }
   if (const std::int64_t echoed = stage::decode(words, block.first, token); echoed != token_) {
@@ -145,14 +173,14 @@ Result<MotionToken> ModbusStage::start_homing(Epoch epoch) {
 Result<MotionToken> ModbusStage::send_motion(std::vector<std::uint16_t> words, MotionToken token,
                                              const std::string& tried) {
   const std::uint16_t first = config_.registers.motion_block().first;
-  auto sent = link_.write_registers(first, words);
+  auto sent = talk([&] { return link_.write_registers(first, words); });
   if (sent) return token;
   if (!is_worth_another_try(sent.error())) return failure(in_words_of(std::move(sent).error(), tried));
   // The reply is missing, not necessarily the command: the stage knows.
   const Result<StageState> state = read_state();
   if (!state) return failure(in_words_of(state.error(), tried));
   if (state->accepted_token == token || state->refused_token == token) return token;
-  sent = link_.write_registers(first, words);
+  sent = talk([&] { return link_.write_registers(first, words); });
   if (!sent) return failure(in_words_of(std::move(sent).error(), tried));
   return token;
 }
@@ -160,9 +188,10 @@ Result<MotionToken> ModbusStage::send_motion(std::vector<std::uint16_t> words, M
 // For commands that may arrive twice: they set a state, they do not start anything.
 Result<void> ModbusStage::write_again(std::uint16_t first, const std::vector<std::uint16_t>& words,
                                       const std::string& tried) {
-  Result<void> sent = link_.write_registers(first, words);
+  const auto write = [&] { return link_.write_registers(first, words); };
+  Result<void> sent = talk(write);
   for (int tries = 1; !sent && is_worth_another_try(sent.error()) && tries < kTries; ++tries) {
-    sent = link_.write_registers(first, words);
+    sent = talk(write);
   }
   if (!sent) return failure(in_words_of(std::move(sent).error(), tried));
   return {};

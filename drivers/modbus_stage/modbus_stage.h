@@ -18,6 +18,9 @@ namespace gonio::drivers {
 /// belongs to another request and is thrown away with all the line still holds. Identity and map version are checked at
 /// every look. Tries of one call are at most `kTries`; an exception reply is not tried again. A motion command is
 /// written once more only after a look has shown that it did not arrive.
+///
+/// A stage that has left everything unanswered for the heartbeat's timeout has stopped by itself: from then on a call
+/// fails with Unreachable instead of TimedOut, and is tried once. The first answer ends that.
 class ModbusStage final : public Stage {
  public:
   static constexpr int kTries = 3;
@@ -32,6 +35,11 @@ class ModbusStage final : public Stage {
   Result<void> reset(Epoch epoch) override;
 
  private:
+  /// The exchange that `exchange` makes, with what it tells of the stage's silence.
+  template <class Exchange>
+  [[nodiscard]] Result<void> talk(Exchange exchange);
+  [[nodiscard]] bool has_been_silent_too_long() const;
+  [[nodiscard]] bool is_worth_another_try(const Error& error) const;
   [[nodiscard]] Result<StageState> look_once();
   [[nodiscard]] Result<MotionToken> fresh_motion_token();
   [[nodiscard]] Result<MotionToken> send_motion(std::vector<std::uint16_t> words, MotionToken token,
@@ -48,8 +56,9 @@ class ModbusStage final : public Stage {
     MotionToken refused = 0;
   };
   std::optional<ShownTokens> shown_;
-  std::uint16_t token_ = 0;       ///< of the last look
-  MotionToken motion_token_ = 0;  ///< of the last motion command
+  std::optional<Instant> silent_since_;  ///< when the first exchange without an answer began
+  std::uint16_t token_ = 0;              ///< of the last look
+  MotionToken motion_token_ = 0;         ///< of the last motion command
 };
 
 }  // namespace gonio::drivers

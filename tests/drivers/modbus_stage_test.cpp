@@ -143,6 +143,31 @@ TEST_F(ModbusStageTest, SaysWhatWasTriedWhenTheStageStaysSilent) {
   EXPECT_THAT(describe(state.error()), HasSubstr("read its state"));
 }
 
+TEST_F(ModbusStageTest, IsUnreachableOnceSilentForTheHeartbeatsTimeout) {
+  link.script.assign(ModbusStage::kTries + 1, Next::LoseRequest);
+  ASSERT_EQ(stage.read_state().error().code, ErrorCode::TimedOut);
+  clock.advance(config.heartbeat_timeout);
+
+  const auto state = stage.read_state();
+
+  ASSERT_FALSE(state.has_value());
+  EXPECT_EQ(state.error().code, ErrorCode::Unreachable);
+  EXPECT_THAT(state.error().limit, HasSubstr("heartbeat"));
+  EXPECT_EQ(link.transactions, ModbusStage::kTries + 1) << "no more tries at a stage that has gone";
+}
+
+TEST_F(ModbusStageTest, CountsItsSilenceFromTheFirstExchangeWithoutAnAnswer) {
+  ASSERT_TRUE(stage.read_state().has_value());
+  clock.advance(10 * config.heartbeat_timeout);  // nobody asked: that is no silence
+  link.script.assign(ModbusStage::kTries, Next::LoseRequest);
+  ASSERT_EQ(stage.read_state().error().code, ErrorCode::TimedOut);
+  ASSERT_TRUE(stage.read_state().has_value());  // it answered
+  clock.advance(config.heartbeat_timeout);
+  link.script.assign(ModbusStage::kTries, Next::LoseRequest);
+
+  EXPECT_EQ(stage.read_state().error().code, ErrorCode::TimedOut);
+}
+
 TEST_F(ModbusStageTest, TakesAnExceptionAtItsWord) {
   link.script = {Next::Exception};
 
