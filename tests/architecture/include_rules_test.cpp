@@ -25,6 +25,7 @@ const std::map<std::string, Names>& allowed() {
       {"reflectance", {"base"}},
       {"calibration", {"reflectance", "base"}},
       {"protocol/stage", {"base"}},
+      {"protocol/usbtmc", {"base"}},
       {"protocol/api", {"base"}},
       {"drivers", {"protocol/stage", "base"}},
       {"sim", {"protocol/stage", "reflectance", "base"}},
