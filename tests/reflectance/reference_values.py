@@ -3,7 +3,7 @@
 
 Every value comes from the textbook formula with 30 digits or more, where its cancellations do no harm.
 """
-from mpmath import cos, cot, erfc, exp, log, mp, mpf, nstr, pi, quad, sin, sqrt
+from mpmath import atan2, cos, cot, erfc, exp, log, mp, mpf, nstr, pi, quad, sin, sqrt
 
 mp.dps = 40
 
@@ -84,3 +84,42 @@ mp.dps = 20
 for w in ("0.5", "0.9"):
     integral = quad(lambda m: exp(log_h(m, mpf(w))) * m, [mpf("1e-9"), mpf("0.05"), mpf("0.3"), 1])
     show(f"A of hapke_exact {w}", 1 - 2 * sqrt(1 - mpf(w)) * integral, 16)
+
+mp.dps = 40
+
+
+def turned_z(v, a):
+    return [cos(a) * v[0] - sin(a) * v[1], sin(a) * v[0] + cos(a) * v[1], v[2]]
+
+
+def turned_y(v, a):
+    return [cos(a) * v[0] + sin(a) * v[2], v[1], -sin(a) * v[0] + cos(a) * v[2]]
+
+
+def direction(theta, phi):
+    return [sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)]
+
+
+def polar(v):
+    return atan2(sqrt(v[0] ** 2 + v[1] ** 2), v[2]), atan2(v[1], v[0])
+
+
+def half_and_difference(i, r):
+    """Rusinkiewicz (1998): theta_h, phi_h, theta_d, phi_d."""
+    theta_h, phi_h = polar([a + b for a, b in zip(i, r)])
+    return (theta_h, phi_h) + polar(turned_y(turned_z(i, -phi_h), -theta_h))
+
+
+def about_specular(theta_i, phi_i, r):
+    """The arc from the mirror direction, and the azimuth about it: 0 towards the normal."""
+    arc, azimuth = polar(turned_y(turned_z(r, -(phi_i + pi)), -theta_i))
+    return arc, azimuth - pi if azimuth > 0 else azimuth + pi
+
+
+for row in [(30, 0, 45, 60), (10, -170, 80, 160), ("89.5", 20, 60, "-159.99"), (75, 45, "0.5", -100),
+            (55, 30, 55, "210.001"), (20, 0, 70, 180)]:
+    theta_i, phi_i, theta_r, phi_r = [rad(x) for x in row]
+    r = direction(theta_r, phi_r)
+    angles = half_and_difference(direction(theta_i, phi_i), r) + about_specular(theta_i, phi_i, r)
+    for name, angle in zip(["theta_h", "phi_h", "theta_d", "phi_d", "radial", "azimuth"], angles):
+        show(f"{name} of {row}", angle * 180 / pi)
