@@ -27,7 +27,7 @@ const std::map<std::string, Names>& allowed() {
       {"protocol/stage", {"base"}},
       {"protocol/usbtmc", {"base"}},
       {"protocol/api", {"base"}},
-      {"drivers", {"protocol/stage", "base"}},
+      {"drivers", {"protocol/stage", "protocol/usbtmc", "base"}},
       {"sim", {"protocol/stage", "reflectance", "base"}},
       {"cli", {"protocol/api", "base"}},
       {"daemon", {"drivers", "calibration", "reflectance", "protocol/stage", "protocol/api", "base"}},
