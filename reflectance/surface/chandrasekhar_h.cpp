@@ -32,12 +32,15 @@ double one_minus_x_cot_x(double x) {
 // mu.
 std::vector<Node> integral_nodes(double one_minus_omega0) {
   std::vector<Node> nodes;
-  for (const EndNode& node : tanh_sinh(5)) {
+  for (const EndNode& node : tanh_sinh(6)) {
     const double x = 0.5 * kPi * node.x;
-    const double argument = one_minus_omega0 + (1.0 - one_minus_omega0) * one_minus_x_cot_x(x);
     const double c = std::sin(0.5 * kPi * node.rest);
     const double s = std::sin(x);
-    nodes.push_back({.weighted_log = 0.5 * kPi * node.weight * std::log(argument), .cos2 = c * c, .sin2 = s * s});
+    const double omega0 = 1.0 - one_minus_omega0;
+    // Towards pi/2, which is all that a small mu sees, the argument is 1 but for x cot x.
+    const double log =
+        node.x > 0.5 ? std::log1p(-omega0 * x * c / s) : std::log(one_minus_omega0 + omega0 * one_minus_x_cot_x(x));
+    nodes.push_back({.weighted_log = 0.5 * kPi * node.weight * log, .cos2 = c * c, .sin2 = s * s});
   }
   return nodes;
 }
@@ -48,21 +51,24 @@ double log_h(const std::vector<Node>& nodes, double mu) {
   return -mu / kPi * sum.value();
 }
 
+// cos(pi m / (2 size)): a large m is taken back by whole turns first, where its product with pi would round.
+double chebyshev_cosine(std::size_t m, std::size_t size) {
+  return std::cos(0.5 * kPi * static_cast<double>(m % (4 * size)) / static_cast<double>(size));
+}
+
 // Coefficients of the powers of t of the polynomial through f at the Chebyshev points of [-1, 1].
 template <std::size_t size, class F>
 std::array<double, size> fitted(F f) {
   std::array<double, size> samples;
-  for (std::size_t j = 0; j < size; ++j) samples[j] = f(std::cos(kPi * (static_cast<double>(j) + 0.5) / size));
+  for (std::size_t j = 0; j < size; ++j) samples[j] = f(chebyshev_cosine(2 * j + 1, size));
   std::array<double, size> powers{};
   std::array<double, size> older{};    // T_{k-1}
   std::array<double, size> current{};  // T_k
   current[0] = 1.0;
   for (std::size_t k = 0; k < size; ++k) {
-    double c = 0.0;
-    for (std::size_t j = 0; j < size; ++j) {
-      c += samples[j] * std::cos(kPi * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / size);
-    }
-    c *= (k == 0 ? 1.0 : 2.0) / size;
+    CompensatedSum sum;
+    for (std::size_t j = 0; j < size; ++j) sum.add(samples[j] * chebyshev_cosine(k * (2 * j + 1), size));
+    const double c = sum.value() * (k == 0 ? 1.0 : 2.0) / size;
     for (std::size_t n = 0; n < size; ++n) powers[n] += c * current[n];
     std::array<double, size> next{};
     for (std::size_t n = 0; n + 1 < size; ++n) next[n + 1] = (k == 0 ? 1.0 : 2.0) * current[n];

@@ -9,6 +9,12 @@
 namespace gonio::reflectance {
 namespace {
 
+// From the thinner side a sum of two positive parts, which keeps its digits at grazing incidence with n close to 1.
+double squared_refracted_cosine(double cos_theta, double sin_theta, double n) {
+  if (n >= 1.0) return ((n - 1.0) * (n + 1.0) + cos_theta * cos_theta) / (n * n);
+  return (1.0 - sin_theta / n) * (1.0 + sin_theta / n);
+}
+
 // t2: squared cosine of the refracted direction, <= 0 from the critical angle on.
 FresnelReflectance from_cosines(double cos_theta, double sin_theta, double n, double t2) {
   if (t2 <= 0.0) return {.s = 1.0, .p = 1.0};
@@ -26,7 +32,7 @@ FresnelReflectance from_cosines(double cos_theta, double sin_theta, double n, do
 
 FresnelReflectance fresnel(double cos_theta, double sin_theta, double n) {
   assert(n > 0.0 && std::isfinite(n) && cos_theta >= 0.0 && sin_theta >= 0.0);
-  return from_cosines(cos_theta, sin_theta, n, (1.0 - sin_theta / n) * (1.0 + sin_theta / n));
+  return from_cosines(cos_theta, sin_theta, n, squared_refracted_cosine(cos_theta, sin_theta, n));
 }
 
 FresnelReflectance fresnel(Angle theta, double n) {
@@ -41,7 +47,7 @@ FresnelReflectance fresnel(Angle theta, double n) {
 
 double fresnel_transmittance(double cos_theta, double sin_theta, double n) {
   assert(n > 0.0 && std::isfinite(n) && cos_theta >= 0.0 && sin_theta >= 0.0);
-  const double t2 = (1.0 - sin_theta / n) * (1.0 + sin_theta / n);
+  const double t2 = squared_refracted_cosine(cos_theta, sin_theta, n);
   if (t2 <= 0.0) return 0.0;
   const double t = std::sqrt(t2);
   const double across = cos_theta + n * t;

@@ -76,6 +76,7 @@ Hapke::Hapke(HapkeParameters p, double one_minus_omega0)
       phase_(p.g),
       a_(p.form == HapkeForm::AsPrinted ? 1.0 : 2.0),
       b_(2.0 * std::sqrt(one_minus_omega0)),
+      rise_(p.omega0 / (0.5 + 0.25 * b_)),
       scale_(p.omega0 / (4.0 * std::numbers::pi)) {
   if (p.form == HapkeForm::Exact) exact_.emplace(one_minus_omega0);
 }

@@ -48,8 +48,9 @@ class Hapke {
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const {
     const double mu_i = clamped_mu(i);
     const double mu_r = clamped_mu(r);
-    const double excess = p_.g == 0.0 ? 0.0 : phase_(i, r, separation_terms(i, r)) - 1.0;
-    return per_steradian(scale_ * (excess + h_product(mu_i, mu_r)) / (mu_i + mu_r));
+    const double orders = p_.g == 0.0 ? h_product(mu_i, mu_r)
+                                      : phase_(i, r, separation_terms(i, r)) + higher_orders(mu_i, mu_r);
+    return per_steradian(scale_ * orders / (mu_i + mu_r));
   }
   /// At g = 0 closed, to some 1e-15 for all omega0 and mu, the removable pole at 2 gamma mu = 1 included; with the
   /// exact H it is 1 - gamma H(mu).
@@ -70,11 +71,19 @@ class Hapke {
     if (exact_) return std::exp(exact_->log(mu_i) + exact_->log(mu_r));
     return approximate_h(mu_i) * approximate_h(mu_r);
   }
+  /// H H - 1 without the subtraction: all there is beside a phase function of which only its dim side is seen.
+  [[nodiscard]] double higher_orders(double mu_i, double mu_r) const {
+    if (exact_) return std::expm1(exact_->log(mu_i) + exact_->log(mu_r));
+    const double more_i = rise_ * mu_i / (1.0 + b_ * mu_i);
+    const double more_r = rise_ * mu_r / (1.0 + b_ * mu_r);
+    return more_i + more_r + more_i * more_r;
+  }
 
   HapkeParameters p_;
   HenyeyGreenstein phase_;
   double a_;      ///< 2 or 1
   double b_;      ///< 2 gamma
+  double rise_;   ///< 2 - 2 gamma: H - 1 = rise mu / (1 + b mu) in Hapke's form
   double scale_;  ///< omega0 / (4 pi)
   std::optional<ChandrasekharH> exact_;
 };
