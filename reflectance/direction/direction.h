@@ -55,6 +55,7 @@ class Direction {
 
   friend constexpr bool operator==(const Direction&, const Direction&) = default;
   friend Direction mirrored(const Direction& i);
+  friend struct DirectionBlock;  // batch/direction_block.h: the same parts, side by side
 
  private:
   Direction(double mu, double sin_theta, double theta, double elevation, Angle phi);

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/fresnel.h"
 #include "reflectance/surface/model_spec.h"
 #include "reflectance/surface/surface.h"
@@ -23,6 +24,8 @@ class FresnelMirror {
   [[nodiscard]] static Result<FresnelMirror> make(FresnelMirrorParameters p);
 
   [[nodiscard]] Brdf eval(const Direction&, const Direction&) const { return {}; }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const { return {.has_kernel = true}; }
   [[nodiscard]] double rho_dh(const Direction&) const { return 0.0; }
   [[nodiscard]] double specular(const Direction& i) const;
   [[nodiscard]] double albedo() const { return fresnel_albedo(p_.refractive_index); }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/clamped_cosine.h"
 #include "reflectance/surface/fresnel.h"
 #include "reflectance/surface/model_spec.h"
@@ -54,6 +55,8 @@ class Glint {
     const double facets = peak_ * std::exp(-tan2_beta / p_.slope_variance);
     return per_steradian(fresnel_share * facets * per_cos4 / (4.0 * (mu_i * mu_r)) * visible_share(i, r));
   }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const;
 
   [[nodiscard]] std::string_view model() const { return spec(p_.shadowing).name; }
   [[nodiscard]] Parameters parameters() const {
@@ -71,6 +74,11 @@ class Glint {
     return 1.0 / (1.0 + (hidden_ratio(i) + hidden_ratio(r)));
   }
   [[nodiscard]] double hidden_ratio(const Direction& d) const;  ///< Smith's Lambda
+
+  void fill_visible_shares(double* shares, const Direction& i, const DirectionBlock& r, VectorUnit unit) const;
+
+  // Where e^-depth comes close to what a double can hold: eval_fast is 0 beyond.
+  static constexpr double kDeepest = 700.0;
 
   GlintParameters p_;
   double peak_;       ///< 1 / (pi sigma^2)

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/chandrasekhar_h.h"
 #include "reflectance/surface/clamped_cosine.h"
 #include "reflectance/surface/henyey_greenstein.h"
@@ -52,6 +53,8 @@ class Hapke {
                                       : phase_(i, r, separation_terms(i, r)) + higher_orders(mu_i, mu_r);
     return per_steradian(scale_ * orders / (mu_i + mu_r));
   }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const;
   /// At g = 0 closed, to some 1e-15 for all omega0 and mu, the removable pole at 2 gamma mu = 1 included; with the
   /// exact H it is 1 - gamma H(mu).
   [[nodiscard]] std::optional<double> rho_dh(const Direction& i) const;
@@ -78,6 +81,8 @@ class Hapke {
     const double more_r = rise_ * mu_r / (1.0 + b_ * mu_r);
     return more_i + more_r + more_i * more_r;
   }
+
+  void fill_higher_orders(double* orders, const Direction& i, const DirectionBlock& r, VectorUnit unit) const;
 
   HapkeParameters p_;
   HenyeyGreenstein phase_;

@@ -16,6 +16,8 @@ class HenyeyGreenstein {
       : g_(g), numerator_((1.0 - g) * (1.0 + g)), offset_((1.0 - std::abs(g)) * (1.0 - std::abs(g))) {}
 
   [[nodiscard]] double g() const { return g_; }
+  [[nodiscard]] double numerator() const { return numerator_; }  ///< 1 - g^2
+  [[nodiscard]] double offset() const { return offset_; }        ///< (1 - |g|)^2
   /// `t` = separation_terms(i, r), which most callers have already.
   [[nodiscard]] double operator()(const Direction& i, const Direction& r, const SeparationTerms& t) const {
     const double q = g_ < 0.0 ? offset_ - 4.0 * g_ * sin2_half_phase(t) : offset_ + 4.0 * g_ * cos2_half_phase(i, r);

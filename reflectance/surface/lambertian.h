@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/model_spec.h"
 #include "reflectance/surface/surface.h"
 
@@ -21,6 +22,8 @@ class Lambertian {
   [[nodiscard]] static Result<Lambertian> make(LambertianParameters p);
 
   [[nodiscard]] Brdf eval(const Direction&, const Direction&) const { return f_; }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const { return {.has_kernel = true}; }
   [[nodiscard]] double rho_dh(const Direction&) const { return p_.rho; }
   [[nodiscard]] double albedo() const { return p_.rho; }
   [[nodiscard]] DirectionSample sample(const Direction&, UnitPoint draw) const {

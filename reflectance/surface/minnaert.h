@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/clamped_cosine.h"
 #include "reflectance/surface/model_spec.h"
 #include "reflectance/surface/surface.h"
@@ -26,6 +27,8 @@ class Minnaert {
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const {
     return per_steradian(p_.rho / std::numbers::pi * std::pow(clamped_mu(i) * clamped_mu(r), p_.k));
   }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const;
   /// 2 rho mu^k / (k + 2).
   [[nodiscard]] double rho_dh(const Direction& i) const {
     return 2.0 * p_.rho * std::pow(clamped_mu(i), p_.k) / (p_.k + 2.0);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/clamped_cosine.h"
 #include "reflectance/surface/henyey_greenstein.h"
 #include "reflectance/surface/model_spec.h"
@@ -45,6 +46,8 @@ class Rpv {
     const double hot_spot = 1.0 + (1.0 - p_.rho0) / (1.0 + retro_distance(t, product));
     return per_steradian(scale_ * std::pow(product * (mu_i + mu_r), p_.k - 1.0) * phase_(i, r, t) * hot_spot);
   }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const;
 
   [[nodiscard]] std::string_view model() const { return p_.norm == RpvNorm::Brdf ? kSpec.name : kSpecBrf.name; }
   [[nodiscard]] Parameters parameters() const { return {{"rho0", p_.rho0}, {"k", p_.k}, {"g", p_.g}}; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <concepts>
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "base/units.h"
+#include "reflectance/batch/direction_block.h"
 #include "reflectance/direction/direction.h"
 #include "reflectance/sampling/direction_sample.h"
 
@@ -33,6 +35,18 @@ enum class Feature : std::uint8_t {
   Lobe,     ///< a peak about the mirror direction, narrower than a radian
 };
 
+/// f_r of one incidence for each lane of a block.
+using BrdfBlock = std::array<Brdf, DirectionBlock::kSize>;
+
+/// What a surface's fast evaluation promises: |eval_fast - eval| <= relative_error eval + absolute_error for every pair
+/// of directions. Without a kernel the model's own `eval` is called, and both are 0.
+struct FastPath {
+  bool has_kernel = false;
+  double relative_error = 0.0;
+  Brdf absolute_error{};
+  friend bool operator==(const FastPath&, const FastPath&) = default;
+};
+
 /// What every surface can do: one BRDF, split in a smooth part that `eval` gives and a mirror part that it never
 /// contains.
 ///   eval(i, r)       the smooth part of f_r, finite for every pair of directions, horizon included; the same bits for
@@ -46,6 +60,9 @@ enum class Feature : std::uint8_t {
 ///   albedo()         the Bond albedo, mirror part included, where it has a closed form
 ///   sample(i, draw)  a direction drawn by an inverse in closed form
 ///   feature()        else Smooth
+///   eval_fast(i, r, f), fast_path()
+///                    f[k] for each lane of a DirectionBlock by vector code (batch/), and how far it may be from `eval`;
+///                    the bits of a lane depend on nothing but i and that lane
 /// All are pure: threads any.
 template <class M>
 concept SurfaceModel = std::copyable<M> && requires(const M m, const Direction& d) {
@@ -70,6 +87,12 @@ class Surface {
   [[nodiscard]] Brdf eval(const Geometry& g) const { return eval(incident_direction(g), reflected_direction(g)); }
   /// One incidence, many views: out[k] = eval(i, r[k]), the same bits. The spans have the same length (asserted).
   void eval(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const { model_->eval(i, r, out); }
+
+  /// As above by vector code where the model has a kernel: within fast_path() of eval(i, r[k]), the same bits however a
+  /// batch is split and whichever vector unit the processor has.
+  void eval_fast(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const;
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f) const { model_->eval_fast(i, r, f); }
+  [[nodiscard]] FastPath fast_path() const { return model_->fast_path(); }
 
   /// Directional-hemispherical reflectance of the smooth part, where a formula gives it.
   [[nodiscard]] std::optional<double> closed_rho_dh(const Direction& i) const { return model_->closed_rho_dh(i); }
@@ -102,6 +125,8 @@ class Surface {
     virtual ~Interface() = default;
     virtual Brdf eval(const Direction& i, const Direction& r) const = 0;
     virtual void eval(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const = 0;
+    virtual void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f) const = 0;
+    virtual FastPath fast_path() const = 0;
     virtual std::optional<double> closed_rho_dh(const Direction& i) const = 0;
     virtual double specular(const Direction& i) const = 0;
     virtual std::optional<double> closed_albedo() const = 0;
@@ -139,6 +164,20 @@ struct Surface::Holder final : Surface::Interface {
   void eval(const Direction& i, std::span<const Direction> r, std::span<Brdf> out) const override {
     assert(r.size() == out.size());
     for (std::size_t k = 0; k < r.size(); ++k) out[k] = model_value.eval(i, r[k]);
+  }
+
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f) const override {
+    if constexpr (requires { model_value.eval_fast(i, r, f); })
+      model_value.eval_fast(i, r, f);
+    else
+      for (std::size_t k = 0; k < f.size(); ++k) f[k] = model_value.eval(i, r.at(k));
+  }
+
+  FastPath fast_path() const override {
+    if constexpr (requires { model_value.fast_path(); })
+      return model_value.fast_path();
+    else
+      return {};
   }
 
   std::optional<double> closed_rho_dh(const Direction& i) const override {

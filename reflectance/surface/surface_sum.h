@@ -22,6 +22,9 @@ class SurfaceSum {
     for (const SurfaceTerm& term : terms_) sum += term.weight * term.surface.eval(i, r);
     return sum;
   }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f) const;
+  /// That of the farthest term, and the rounding of the sum.
+  [[nodiscard]] FastPath fast_path() const;
   [[nodiscard]] double specular(const Direction& i) const;
 
   /// "sum"; files name its terms.

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/clamped_cosine.h"
 #include "reflectance/surface/fresnel.h"
 #include "reflectance/surface/model_spec.h"
@@ -28,6 +29,8 @@ class WaterBody {
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const {
     return per_steradian(scale_ * (passed(i) * passed(r)));
   }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
+  [[nodiscard]] FastPath fast_path() const { return {.has_kernel = true}; }
   /// T(t_i) rho_w (1 - A_ext) / (n^2 (1 - A_int rho_w)): T(t_i) for a loss-free body.
   [[nodiscard]] double rho_dh(const Direction& i) const { return hemispherical_ * passed(i); }
   /// Of isotropic light 1 - A_ext passes.
