@@ -1,0 +1,113 @@
+#include "reflectance/table/table_row.h"
+
+#include <cmath>
+#include <utility>
+
+namespace gonio::reflectance {
+namespace {
+
+// Of the nodes off the plane of incidence.
+void add_mirror_images(std::vector<TableNode>& nodes, double tolerance) {
+  const std::size_t measured = nodes.size();
+  for (std::size_t k = 0; k < measured; ++k) {
+    TableNode image = nodes[k];
+    if (image.r.y <= 0.5 * tolerance) continue;
+    image.r.y = -image.r.y;
+    nodes.push_back(image);
+  }
+}
+
+}  // namespace
+
+Result<TableRow> TableRow::make(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes, RowAzimuths azimuths,
+                                const TableOptions& options) {
+  const std::size_t measured = nodes.size();
+  const double tolerance = options.same_direction.si();
+  if (options.layout == TableLayout::Rings || azimuths == RowAzimuths::None) {
+    RingRow rings(nodes, tolerance, azimuths);
+    return TableRow(theta_i, phi_i, std::move(nodes), measured, std::move(rings), azimuths == RowAzimuths::None,
+                    options);
+  }
+  if (azimuths == RowAzimuths::Folded) add_mirror_images(nodes, tolerance);
+  Result<MeshRow> mesh = MeshRow::make(nodes);
+  if (!mesh) return failure(std::move(mesh).error());
+  return TableRow(theta_i, phi_i, std::move(nodes), measured, std::move(*mesh), false, options);
+}
+
+TableRow::TableRow(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes, std::size_t measured,
+                   std::variant<RingRow, MeshRow> place, bool is_profile, const TableOptions& options)
+    : theta_i_(theta_i),
+      phi_i_(phi_i),
+      tilt_{.mu = std::max(0.0, std::cos(theta_i.si())), .sin_theta = std::sin(theta_i.si())},
+      nodes_(std::move(nodes)),
+      measured_(measured),
+      place_(std::move(place)),
+      widest_cell_(options.widest_cell.si()),
+      is_profile_(is_profile) {
+  if (options.beyond == BeyondReach::Continue) continuation_ = Continuation(nodes_);
+}
+
+Stencil TableRow::locate(const Vector& r) const {
+  const auto* mesh = std::get_if<MeshRow>(&place_);
+  return mesh != nullptr ? mesh->locate(r) : std::get<RingRow>(place_).locate(r);
+}
+
+double TableRow::sum(const Stencil& stencil) const {
+  double f = 0.0;
+  for (std::size_t k = 0; k < stencil.size; ++k) f += stencil.weight[k] * nodes_[stencil.node[k]].f;
+  return f;
+}
+
+// Where a node stands for all azimuths, all of them are that of the nodes.
+Vector TableRow::in_profile(const Vector& r) const {
+  return is_profile_ ? Vector{.x = std::hypot(r.x, r.y), .y = 0.0, .z = r.z} : r;
+}
+
+double TableRow::continued(const Vector& r, const Vector& edge) const {
+  return continuation_(in_profile(r)) - continuation_(in_profile(edge));
+}
+
+double TableRow::value(const Vector& r) const {
+  const Stencil stencil = locate(r);
+  const double f = sum(stencil);
+  return stencil.is_inside ? f : f + continued(r, stencil.place);
+}
+
+TableRow::Value TableRow::value_and_more(const Vector& r) const {
+  const Stencil stencil = locate(r);
+  Value value{.f = sum(stencil), .is_covered = stencil.is_inside && stencil.width <= widest_cell_};
+  const Vector from = in_profile(stencil.place);
+  for (std::size_t k = 0; k < stencil.size; ++k) {
+    const TableNode& node = nodes_[stencil.node[k]];
+    value.u += stencil.weight[k] * node.u;
+    value.distance += stencil.weight[k] * arc(node.r, from);
+  }
+  if (!stencil.is_inside) {
+    value.f += continued(r, stencil.place);
+    value.distance += arc(stencil.place, r);
+  }
+  return value;
+}
+
+std::vector<double> TableRow::without(std::size_t k) const {
+  std::vector<double> told;
+  if (const auto* rings = std::get_if<RingRow>(&place_)) {
+    for (const Stencil& stencil : rings->locate_without(k)) told.push_back(sum(stencil));
+    return told;
+  }
+  const Vector image{nodes_[k].r.x, -nodes_[k].r.y, nodes_[k].r.z};
+  std::optional<std::size_t> image_node;
+  for (std::size_t n = measured_; n < nodes_.size(); ++n) {
+    if (nodes_[n].r == image) image_node = n;
+  }
+  if (const auto stencil = std::get<MeshRow>(place_).locate_without(k, image_node)) told.push_back(sum(*stencil));
+  return told;
+}
+
+bool TableRow::quadrature(int order, const QuadratureSink& sink) const {
+  if (const auto* mesh = std::get_if<MeshRow>(&place_)) return mesh->quadrature(order, sink);
+  std::get<RingRow>(place_).quadrature(order, sink);
+  return true;
+}
+
+}  // namespace gonio::reflectance

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "base/result.h"
+#include "reflectance/table/continuation.h"
+#include "reflectance/table/feature_motion.h"
+#include "reflectance/table/mesh_row.h"
+#include "reflectance/table/ring_row.h"
+#include "reflectance/table/table_options.h"
+
+namespace gonio::reflectance {
+
+/// All that is known of one incidence. Directions are in its frame: x points along phi_i. Immutable; threads: any.
+class TableRow {
+ public:
+  /// What stands at a direction, and by what right.
+  struct Value {
+    double f = 0.0;
+    double u = 0.0;
+    bool is_covered = false;
+    double distance = 0.0;  ///< to the readings it comes from, weighted as they are; 0 at a reading [rad]
+  };
+
+  /// `nodes` not empty. Errors: InvalidInput when scattered directions lie on one line.
+  [[nodiscard]] static Result<TableRow> make(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes,
+                                             RowAzimuths azimuths, const TableOptions& options);
+
+  [[nodiscard]] double value(const Vector& r) const;
+  [[nodiscard]] Value value_and_more(const Vector& r) const;
+  /// What the other readings of this incidence would say of node k: nothing, one answer, or two.
+  [[nodiscard]] std::vector<double> without(std::size_t k) const;
+  /// See MeshRow::quadrature.
+  [[nodiscard]] bool quadrature(int order, const QuadratureSink& sink) const;
+
+  [[nodiscard]] Angle theta_i() const { return theta_i_; }
+  [[nodiscard]] Angle phi_i() const { return phi_i_; }
+  [[nodiscard]] const IncidenceTilt& tilt() const { return tilt_; }
+  /// The measured ones, without what was added to complete them.
+  [[nodiscard]] std::span<const TableNode> nodes() const { return std::span(nodes_).first(measured_); }
+
+ private:
+  TableRow(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes, std::size_t measured,
+           std::variant<RingRow, MeshRow> place, bool is_profile, const TableOptions& options);
+  [[nodiscard]] Stencil locate(const Vector& r) const;
+  [[nodiscard]] double sum(const Stencil& stencil) const;
+  [[nodiscard]] Vector in_profile(const Vector& r) const;
+  [[nodiscard]] double continued(const Vector& r, const Vector& edge) const;
+
+  Angle theta_i_;
+  Angle phi_i_;
+  IncidenceTilt tilt_;
+  std::vector<TableNode> nodes_;
+  std::size_t measured_;
+  std::variant<RingRow, MeshRow> place_;
+  Continuation continuation_;
+  double widest_cell_;
+  bool is_profile_;  ///< a node stands for all azimuths
+};
+
+}  // namespace gonio::reflectance

@@ -1,0 +1,168 @@
+#include "reflectance/table/tabulated_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "reflectance/integral/hemisphere_integral.h"
+#include "reflectance/table/detect_feature.h"
+
+namespace gonio::reflectance {
+namespace {
+
+// By +phi for a row whose azimuths are phi_r itself.
+Vector turned(const Vector& r, Angle phi) {
+  const double c = std::cos(phi.si());
+  const double s = std::sin(phi.si());
+  return {.x = c * r.x - s * r.y, .y = s * r.x + c * r.y, .z = r.z};
+}
+
+IncidenceTilt tilt_of(const Direction& i) {
+  return {.mu = i.mu(), .sin_theta = i.sin_theta()};
+}
+
+// The arcs of the profile made for the normal: as dense as the nodes are about the feature, the horizon at last.
+std::vector<double> profile_arcs(const TableRow& row, Feature feature) {
+  std::vector<double> arcs;
+  for (const TableNode& node : row.nodes()) {
+    const Vector r = moved(node.r, row.tilt(), {}, feature);
+    arcs.push_back(std::atan2(std::hypot(r.x, r.y), r.z));
+  }
+  std::sort(arcs.begin(), arcs.end());
+  constexpr std::size_t kMost = 256;
+  const std::size_t step = arcs.size() / kMost + 1;
+  std::vector<double> kept{0.0};
+  for (std::size_t k = step / 2; k < arcs.size(); k += step) {
+    if (arcs[k] - kept.back() > 1e-4) kept.push_back(arcs[k]);
+  }
+  return kept;
+}
+
+// The surface at theta_i = 0, where no azimuth counts: what is left of a row when it is averaged over a turn.
+TableRow normal_row(const TableRow& first, Feature feature, const TableOptions& options) {
+  constexpr int kAzimuths = 72;
+  std::vector<TableNode> nodes;
+  for (const double theta : profile_arcs(first, feature)) {
+    TableNode mean{.r = {.x = std::sin(theta), .y = 0.0, .z = std::cos(theta)}};
+    for (int k = 0; k < kAzimuths; ++k) {
+      const Vector r = turned(mean.r, radians(2.0 * std::numbers::pi * (k + 0.5) / kAzimuths));
+      const TableRow::Value value = first.value_and_more(moved(r, {}, first.tilt(), feature));
+      mean.f += value.f / kAzimuths;
+      mean.u += value.u / kAzimuths;
+    }
+    nodes.push_back(mean);
+  }
+  return TableRow::make(Angle{}, Angle{}, std::move(nodes), RowAzimuths::None, options).value();
+}
+
+bool is_normal(const TableRow& row, const TableOptions& options) {
+  return row.theta_i() <= options.same_direction;
+}
+
+std::vector<RowIncidence> incidences(std::span<const TableRow> rows) {
+  std::vector<RowIncidence> list;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    list.push_back({.theta_i = rows[k].theta_i(), .phi_i = rows[k].phi_i(), .row = k});
+  }
+  return list;
+}
+
+}  // namespace
+
+TabulatedSurface::TabulatedSurface(std::vector<TableRow> rows, const TableOptions& options, TableReport report)
+    : options_(options),
+      feature_(options.feature ? *options.feature : detected_feature(rows)),
+      rows_(std::make_shared<const std::vector<TableRow>>(std::move(rows))),
+      report_(std::make_shared<const TableReport>(std::move(report))),
+      index_(incidences(*rows_), options) {
+  options_.feature = feature_;
+  const auto first = std::min_element(rows_->begin(), rows_->end(),
+                                      [](const TableRow& a, const TableRow& b) { return a.theta_i() < b.theta_i(); });
+  if (options.symmetry == TableSymmetry::Anisotropic || is_normal(*first, options)) return;
+  normal_row_ = std::make_shared<const TableRow>(normal_row(*first, feature_, options));
+  std::vector<RowIncidence> list = incidences(*rows_);
+  list.push_back({.theta_i = {}, .phi_i = {}, .row = rows_->size()});
+  index_ = IncidenceIndex(list, options);
+}
+
+Parameters TabulatedSurface::parameters() const {
+  return {{"readings", static_cast<double>(report_->readings)},
+          {"incidences", static_cast<double>(report_->incidences)}};
+}
+
+Vector TabulatedSurface::in_frame(const Direction& i, const Direction& r) const {
+  const double turn = r.phi().si() - i.phi().si();
+  const double y = r.sin_theta() * std::sin(turn);
+  return {.x = r.sin_theta() * std::cos(turn), .y = is_isotropic() ? std::abs(y) : y, .z = r.mu()};
+}
+
+double TabulatedSurface::one_way(const Direction& i, const Direction& r) const {
+  const IncidenceBracket bracket = index_.bracket(i);
+  const Vector seen = in_frame(i, r);
+  double f = 0.0;
+  for (const IncidenceBracket::Share& share : bracket.shares()) {
+    const TableRow& from = row(share.row);
+    const Vector place = moved(seen, tilt_of(i), from.tilt(), feature_);
+    f += share.weight * from.value(share.is_absolute ? turned(place, i.phi()) : place);
+  }
+  return f;
+}
+
+TabulatedSurface::Known TabulatedSurface::known_one_way(const Direction& i, const Direction& r) const {
+  const IncidenceBracket bracket = index_.bracket(i);
+  const Vector seen = in_frame(i, r);
+  Known known{.is_covered = bracket.is_covered, .distance = bracket.distance};
+  for (const IncidenceBracket::Share& share : bracket.shares()) {
+    const TableRow& from = row(share.row);
+    const Vector place = moved(seen, tilt_of(i), from.tilt(), feature_);
+    const TableRow::Value value = from.value_and_more(share.is_absolute ? turned(place, i.phi()) : place);
+    known.f += share.weight * value.f;
+    known.u += share.weight * value.u;
+    known.distance += share.weight * value.distance;
+    known.is_covered = known.is_covered && value.is_covered;
+  }
+  return known;
+}
+
+// Weights fall with the square of the distance from readings, down to a tenth of a degree: a reading prevails over what
+// is interpolated for its partner. Sums and products are symmetric, so (i, r) and (r, i) give the same bits.
+TabulatedSurface::Known TabulatedSurface::both_ways(const Direction& i, const Direction& r) const {
+  const Known a = known_one_way(i, r);
+  const Known b = known_one_way(r, i);
+  constexpr double kClose = 0.1 * std::numbers::pi / 180.0;
+  const double weight_a = 1.0 / (a.distance * a.distance + kClose * kClose);
+  const double weight_b = 1.0 / (b.distance * b.distance + kClose * kClose);
+  const double total = weight_a + weight_b;
+  return {.f = (weight_a * a.f + weight_b * b.f) / total,
+          .u = (weight_a * a.u + weight_b * b.u) / total,
+          .is_covered = a.is_covered || b.is_covered,
+          .distance = std::min(a.distance, b.distance)};
+}
+
+Measured<Brdf> TabulatedSurface::measured(const Direction& i, const Direction& r) const {
+  const Known known = options_.reciprocal ? both_ways(i, r) : known_one_way(i, r);
+  return {.value = per_steradian(known.f), .u = per_steradian(known.u)};
+}
+
+bool TabulatedSurface::covers(const Direction& i, const Direction& r) const {
+  return options_.reciprocal ? both_ways(i, r).is_covered : known_one_way(i, r).is_covered;
+}
+
+double TabulatedSurface::extrapolated_share(const Direction& i) const {
+  constexpr int kRings = 64;
+  double share = 0.0;
+  for (const HemisphereNode& node : gauss_rings(kRings, 2 * kRings)) {
+    if (!covers(i, node.direction)) share += node.weight_sr / std::numbers::pi;
+  }
+  return share;
+}
+
+TabulatedSurface TabulatedSurface::without_incidence(std::size_t k) const {
+  std::vector<TableRow> rows = *rows_;
+  rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(k));
+  return {std::move(rows), options_, *report_};
+}
+
+}  // namespace gonio::reflectance
