@@ -86,6 +86,14 @@ Result<Hapke> Hapke::make(HapkeParameters p) {
 }
 
 Result<Hapke> Hapke::make_from_co_albedo(double one_minus_omega0, HapkeForm form, double g) {
+  // omega0 hides a loss just below 0, whose root is no number.
+  if (!(one_minus_omega0 >= 0.0 && one_minus_omega0 <= 1.0)) {
+    return failure({.code = ErrorCode::InvalidInput,
+                    .tried = "make a surface \"hapke\"",
+                    .seen = fmt::format("1 - omega0 = {}", one_minus_omega0),
+                    .limit = "0 to 1",
+                    .where = InputLocation{.file = {}, .field = "omega0"}});
+  }
   return make_checked({.omega0 = 1.0 - one_minus_omega0, .form = form, .g = g}, one_minus_omega0);
 }
 
