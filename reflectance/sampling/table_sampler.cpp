@@ -1,0 +1,229 @@
+#include "reflectance/sampling/table_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "reflectance/integral/directional_reflectance.h"
+
+namespace gonio::reflectance {
+namespace {
+
+Error refusal(std::string_view field, std::string seen, std::string limit) {
+  return {.code = ErrorCode::InvalidInput,
+          .tried = "tabulate a surface to sample directions from",
+          .seen = std::move(seen),
+          .limit = std::move(limit),
+          .where = InputLocation{.file = {}, .field = std::string(field)}};
+}
+
+Result<void> check_ranges(const SamplerOptions& options) {
+  if (!(options.accuracy > 0.0))
+    return failure(refusal("accuracy", fmt::format("accuracy {}", options.accuracy), "above 0"));
+  constexpr std::size_t kLeast = 512;
+  constexpr std::size_t kMost = std::size_t{1} << 28U;
+  if (options.most_cells < kLeast || options.most_cells > kMost)
+    return failure(refusal("most_cells", fmt::format("{} cells", options.most_cells), "512 to 2^28"));
+  if (options.use == TableUse::Fast && options.negative_values == NegativeValues::Signed)
+    return failure(
+        refusal("negative_values", "signed weights in a fast table, whose weights are alike", "an unbiased table"));
+  return {};
+}
+
+// |f| mu_r dOmega per square of the chart, and the first value that no density can have.
+class ChartDensity {
+ public:
+  ChartDensity(const Surface& surface, const Direction& i, NegativeValues negative)
+      : surface_(surface), i_(i), negative_(negative) {}
+
+  void operator()(std::span<const ChartPoint> points, std::span<double> values) {
+    directions_.clear();
+    for (const ChartPoint& p : points) directions_.push_back(chart_direction(p, i_.phi()));
+    brdf_.resize(points.size());
+    surface_.eval(i_, directions_, brdf_);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double f = in_per_steradian(brdf_[k]);
+      const bool is_wrong = !std::isfinite(f) || (f < 0.0 && negative_ == NegativeValues::Refuse);
+      if (is_wrong && !wrong_) wrong_ = {directions_[k], f};
+      values[k] = is_wrong ? 0.0 : std::abs(f) * directions_[k].mu() * chart_steradians(points[k].v);
+    }
+  }
+
+  [[nodiscard]] Result<void> verdict() const {
+    if (!wrong_) return {};
+    const auto& [r, f] = *wrong_;
+    return failure(refusal("surface",
+                           fmt::format("{} of {} sr^-1 at theta_r {} deg, phi_r {} deg", surface_.model(), f,
+                                       in_degrees(r.theta()), in_degrees(r.phi())),
+                           negative_ == NegativeValues::Refuse ? "finite, at least 0" : "finite"));
+  }
+
+ private:
+  const Surface& surface_;
+  Direction i_;
+  NegativeValues negative_;
+  std::vector<Direction> directions_;
+  std::vector<Brdf> brdf_;
+  std::optional<std::pair<Direction, double>> wrong_;
+};
+
+// Four a cell, one a corner: the mass of the corner's own part of the bilinear density; then the mirror part.
+std::vector<double> entry_masses(const DensityTree& tree, double specular) {
+  std::vector<double> masses;
+  for (const DensityCell& cell : tree.cells()) {
+    for (const double corner : cell.corner) masses.push_back(0.25 * cell.dv * cell.dw * corner);
+  }
+  masses.push_back(specular);
+  // A black surface has to be drawn from all the same, with weight 0.
+  if (tree.mass() + specular == 0.0) std::ranges::fill(masses, 1.0);
+  return masses;
+}
+
+}  // namespace
+
+// The draws of one run on their way from bits to directions.
+struct TableSampler::Run {
+  std::size_t size = 0;
+  std::array<std::uint32_t, kRun> entry;
+  std::array<double, kRun> v;
+  std::array<double, kRun> w;
+  std::array<double, kRun> mu;
+  std::array<double, kRun> sin_theta;
+};
+
+TableSampler::TableSampler(const Surface& surface, const Direction& i, DensityTree tree)
+    : DirectionSampler(i),
+      surface_(surface),
+      tree_(std::move(tree)),
+      alias_(entry_masses(tree_, surface.specular(i))),
+      specular_(surface.specular(i)),
+      total_(tree_.mass() + specular_) {}
+
+Result<std::unique_ptr<const TableSampler>> TableSampler::make(const Surface& surface, const Direction& i,
+                                                               const SamplerOptions& options) {
+  GONIO_TRY(check_ranges(options));
+  ChartDensity density(surface, i, options.negative_values);
+  const DensityTree::Goal goal{
+      .accuracy = options.accuracy, .most_cells = options.most_cells, .has_peak = surface.feature() != Feature::Smooth};
+  DensityTree tree(std::ref(density), chart_point(i, i.phi()).v, goal);
+  GONIO_TRY(density.verdict());
+
+  std::unique_ptr<TableSampler> sampler(new TableSampler(surface, i, std::move(tree)));
+  const Integral rho = rho_dh(surface, i, std::min(1e-3, 0.1 * options.accuracy));
+  sampler->make_report(options, rho);
+  GONIO_TRY(sampler->check(options, rho));
+  return sampler;
+}
+
+void TableSampler::make_report(const SamplerOptions& options, const Integral& rho) {
+  const DensityAudit& audit = tree_.audit();
+  report_ = {.method = options.use == TableUse::Fast ? SamplingMethod::FastTable : SamplingMethod::Table,
+             .rho_dh = rho.value,
+             .rho_dh_error = rho.error,
+             .most_weight = rho.value,
+             .cells = tree_.cells().size(),
+             .evaluations = tree_.evaluations() + rho.evaluations};
+  if (total_ == 0.0) return;
+  report_.relative_rms = std::sqrt(audit.relative_square / total_);
+  if (options.use == TableUse::Fast) {
+    // |a/A - b/B| <= |a - b|/A + b |1/A - 1/B|, summed over the hemisphere.
+    report_.total_variation = 0.5 * (audit.absolute + std::abs(tree_.mass() - audit.integral)) / total_;
+  } else {
+    constexpr double kWidened = 1.5;
+    report_.most_weight = total_ * (1.0 + kWidened * std::max(0.0, audit.most_ratio - 1.0));
+  }
+}
+
+Result<void> TableSampler::check(const SamplerOptions& options, const Integral& rho) const {
+  if (options.use == TableUse::Fast && report_.total_variation > options.accuracy) {
+    return failure(refusal("accuracy",
+                           fmt::format("{} cells misplace a share of {:.2g}", report_.cells, report_.total_variation),
+                           fmt::format("{:.2g} with at most {} cells", options.accuracy, options.most_cells)));
+  }
+  if (options.negative_values == NegativeValues::Signed) return {};  // the table is of |f|
+  const double tabled = tree_.audit().integral + specular_;
+  const double allowed = 2.0 * options.accuracy * rho.value + rho.error;
+  if (std::abs(tabled - rho.value) <= allowed) return {};
+  return failure(refusal("surface", fmt::format("the table holds {:.6g} of the light", tabled),
+                         fmt::format("rho_dh {:.6g} +- {:.2g}: the cells have missed a peak", rho.value, allowed)));
+}
+
+double TableSampler::density_per_sr(const Direction& r) const {
+  if (total_ == 0.0) return 0.0;
+  const ChartPoint p = chart_point(r, incidence().phi());
+  return tree_.at(p) / (chart_steradians(p.v) * total_);
+}
+
+void TableSampler::draw_run(const RandomStream& stream, std::span<const std::uint64_t> indices,
+                            const SampleBatch& out) const {
+  Run run;
+  run.size = indices.size();
+  choose_places(stream, indices, run);
+  // The azimuth of the chart is turned so that 1/2 points towards i.
+  const double cosine = -std::cos(incidence().phi().si());
+  const double sine = -std::sin(incidence().phi().si());
+  for (std::size_t n = 0; n < run.size; ++n) {
+    const ChartRing ring = chart_ring(run.v[n]);
+    const TurnVector turn = turn_vector(run.w[n]);
+    run.mu[n] = ring.mu;
+    run.sin_theta[n] = ring.sin_theta;
+    out.x[n] = ring.sin_theta * (turn.cosine * cosine - turn.sine * sine);
+    out.y[n] = ring.sin_theta * (turn.cosine * sine + turn.sine * cosine);
+    out.z[n] = ring.mu;
+    out.weight[n] = report_.rho_dh;
+    out.is_specular[n] = 0;
+  }
+  if (report_.method == SamplingMethod::Table && total_ > 0.0) weigh(run, out);
+  if (specular_ > 0.0) put_mirrored(run, out);
+}
+
+void TableSampler::choose_places(const RandomStream& stream, std::span<const std::uint64_t> indices, Run& run) const {
+  const std::span<const DensityCell> cells = tree_.cells();
+  for (std::size_t n = 0; n < indices.size(); ++n) {
+    const RandomBlock bits = stream.block(indices[n]);
+    const std::uint32_t entry = alias_.choose(bits[0], bits[1]);
+    const DensityCell& cell = cells[std::min<std::size_t>(entry / 4, cells.size() - 1)];
+    // Towards the corner that was chosen the density rises linearly: 1 - sqrt(u) from it.
+    const double a = std::sqrt(open_unit(bits[2]));
+    const double b = std::sqrt(open_unit(bits[3]));
+    run.entry[n] = entry;
+    run.v[n] = cell.v + cell.dv * ((entry & 1U) != 0 ? a : 1.0 - a);
+    run.w[n] = cell.w + cell.dw * ((entry & 2U) != 0 ? b : 1.0 - b);
+  }
+}
+
+void TableSampler::weigh(const Run& run, const SampleBatch& out) const {
+  std::array<Direction, kRun> directions;
+  std::array<Brdf, kRun> brdf;
+  for (std::size_t n = 0; n < run.size; ++n) {
+    const Angle phi = incidence().phi() + radians(2.0 * std::numbers::pi * (run.w[n] - 0.5));
+    directions[n] = Direction::from_cosine(run.mu[n], run.sin_theta[n], phi);
+  }
+  surface_.eval(incidence(), std::span(directions).first(run.size), std::span(brdf).first(run.size));
+  const std::span<const DensityCell> cells = tree_.cells();
+  for (std::size_t n = 0; n < run.size; ++n) {
+    const DensityCell& cell = cells[std::min<std::size_t>(run.entry[n] / 4, cells.size() - 1)];
+    const double wanted = in_per_steradian(brdf[n]) * run.mu[n] * chart_steradians(run.v[n]);
+    out.weight[n] = total_ * wanted / cell.at({.v = run.v[n], .w = run.w[n]});
+  }
+}
+
+void TableSampler::put_mirrored(const Run& run, const SampleBatch& out) const {
+  const std::size_t entry = 4 * tree_.cells().size();
+  const Vector r = mirrored(incidence()).vector();
+  for (std::size_t n = 0; n < run.size; ++n) {
+    if (run.entry[n] != entry) continue;
+    out.x[n] = r.x;
+    out.y[n] = r.y;
+    out.z[n] = r.z;
+    out.weight[n] = report_.method == SamplingMethod::Table ? total_ : report_.rho_dh;
+    out.is_specular[n] = 1;
+  }
+}
+
+}  // namespace gonio::reflectance
