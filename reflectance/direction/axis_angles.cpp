@@ -1,5 +1,7 @@
 #include "reflectance/direction/axis_angles.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <string_view>
 
 #include "base/result.h"
 #include "reflectance/direction/direction.h"

@@ -1,5 +1,8 @@
 #include "reflectance/direction/specular_centred_angles.h"
 
+#include <cmath>
+#include <string_view>
+
 #include "reflectance/direction/axis_angles.h"
 
 namespace gonio::reflectance {

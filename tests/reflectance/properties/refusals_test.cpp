@@ -1,7 +1,8 @@
-// What no surface may be made of: every factory, every field, by name. Directions, conventions and the symmetry checks
-// have theirs beside their own tests.
+// What no surface, light or sampler may be made of: every factory, every field, by name. Directions, conventions,
+// tables and the symmetry checks have theirs beside their own tests.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,6 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "reflectance/integral/prepared_reflectance.h"
+#include "reflectance/light/beam.h"
+#include "reflectance/light/cie_sky.h"
+#include "reflectance/light/overcast_sky.h"
+#include "reflectance/light/sun_disk.h"
+#include "reflectance/light/table_sky.h"
+#include "reflectance/light/uniform_sky.h"
+#include "reflectance/sampling/make_sampler.h"
 #include "reflectance/surface/fresnel_mirror.h"
 #include "reflectance/surface/glint.h"
 #include "reflectance/surface/hapke.h"
@@ -91,6 +100,66 @@ TEST(EveryFactory, RefusesWhatTwoFieldsTogetherMakeImpossible) {
   EXPECT_TRUE(error_of(Hapke::make({.omega0 = 0.5, .form = HapkeForm::AsPrinted, .g = 0.1})));
   EXPECT_TRUE(error_of(Hapke::make_from_co_albedo(0.5, HapkeForm::AsPrinted, -0.1)));
   EXPECT_TRUE(error_of(SurfaceSum::make({})));
+}
+
+// Brightnesses of light: finite and at least 0.
+std::vector<Field> brightnesses() {
+  const Direction sun = Direction::from_angles(degrees(40), {});
+  const SunPlace place{.theta = degrees(40), .phi = {}};
+  return {
+      {"normal_irradiance", 0.0, 1e300, [=](double x) { return error_of(Beam::make(sun, x)); }},
+      {"radiance", 0.0, 1e300, [=](double x) { return error_of(SunDisk::make(place, x)); }},
+      {"normal_irradiance", 0.0, 1e300,
+       [=](double x) { return error_of(SunDisk::make_from_normal_irradiance(place, x)); }},
+      {"radiance", 0.0, 1e300, [](double x) { return error_of(UniformSky::make(x)); }},
+      {"zenith_radiance", 0.0, 1e300, [](double x) { return error_of(OvercastSky::make(x)); }},
+      {"zenith_radiance", 0.0, 1e300, [=](double x) { return error_of(CieSky::make(12, sun, x)); }},
+  };
+}
+
+TEST(EveryLight, RefusesABrightnessThatIsNoneByName) {
+  for (const Field& field : brightnesses()) {
+    EXPECT_FALSE(field.make(0.0)) << field.name;
+    EXPECT_FALSE(field.make(1.5)) << field.name;
+    for (const double bad : {std::nan(""), kInf, -kInf, -1e-300}) {
+      const std::optional<Error> error = field.make(bad);
+      ASSERT_TRUE(error) << field.name << " " << bad;
+      EXPECT_EQ(error->code, ErrorCode::InvalidInput);
+      EXPECT_NE(describe(*error).find(field.name), std::string::npos) << describe(*error);
+    }
+  }
+}
+
+TEST(EveryLight, RefusesAPlaceThatIsNone) {
+  const Direction up;
+  for (const int type : {0, 16, -1}) EXPECT_TRUE(error_of(CieSky::make(type, up, 1.0))) << type;
+  for (const double bad : {std::nan(""), kInf, -kInf, -1.0, 180.0}) {
+    EXPECT_TRUE(error_of(SunDisk::make({.theta = degrees(bad), .phi = {}}, 1.0))) << bad;
+    EXPECT_TRUE(error_of(SunDisk::make({.theta = {}, .phi = {}, .radius = degrees(bad)}, 1.0))) << bad;
+    EXPECT_TRUE(error_of(TableSky::make({{}, degrees(bad)}, {{}}, std::array{1.0, 1.0}))) << bad;
+  }
+  for (const double bad : {std::nan(""), kInf, -kInf}) {
+    EXPECT_TRUE(error_of(SunDisk::make({.theta = {}, .phi = degrees(bad)}, 1.0))) << bad;
+    EXPECT_TRUE(error_of(TableSky::make({{}, degrees(90)}, {{}}, std::array{1.0, bad}))) << bad;
+    EXPECT_TRUE(error_of(TableSky::make({{}, degrees(90)}, {{}, degrees(bad)}, std::array{1.0, 1.0, 1.0, 1.0}))) << bad;
+  }
+  EXPECT_TRUE(error_of(TableSky::make({{}, degrees(90)}, {{}}, std::array{1.0})));
+  EXPECT_TRUE(error_of(TableSky::make({}, {}, {})));
+}
+
+TEST(Sampler, RefusesOptionsOutOfTheirRange) {
+  const Direction i = Direction::from_angles(degrees(30), {});
+  for (const double bad : {std::nan(""), -kInf, -1e-3, 0.0}) {
+    EXPECT_TRUE(error_of(make_sampler(wheat(), i, {.accuracy = bad}))) << bad;
+  }
+  EXPECT_TRUE(error_of(make_sampler(wheat(), i, {.most_cells = 511})));
+  EXPECT_TRUE(error_of(make_sampler(wheat(), i, {.most_cells = (std::size_t{1} << 28U) + 1})));
+}
+
+TEST(PreparedReflectance, RefusesAToleranceOutOfItsRange) {
+  for (const double bad : {std::nan(""), kInf, -kInf, -1e-6, 0.0, 1e-13, 0.02}) {
+    EXPECT_TRUE(error_of(PreparedReflectance::make(wheat(), bad))) << bad;
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "reflectance/check/hard_pairs.h"
 #include "reflectance/check/reciprocity_gap.h"
 #include "reflectance/integral/directional_reflectance.h"
+#include "reflectance/table/tabulated_surface.h"
 #include "tests/reflectance/properties/generated_surfaces.h"
 
 namespace gonio::reflectance {
@@ -23,6 +24,28 @@ TEST(EveryModel, IsReciprocalToTheLastBitWhateverItsParameters) {
 
     EXPECT_EQ(gap.ulps, 0u) << text_of(s) << ", " << text_of(gap.pair.i, gap.pair.r) << ": " << gap.forth << " and "
                             << gap.back;
+  }
+}
+
+TEST(TabulatedSurface, IsReciprocalToTheLastBitWhenAskedToBe) {
+  std::vector<TableReading> readings;
+  for (const double ti : {0.0, 30.0, 60.0}) {
+    for (const double tr : {0.0, 20.0, 40.0, 60.0, 80.0}) {
+      for (double phi = 0.0; phi < 360.0; phi += 30.0) {
+        const Geometry g = geometry(ti, tr, phi);
+        readings.push_back({.geometry = g, .f = {.value = wheat().eval(g), .u = per_steradian(1e-3)}});
+      }
+    }
+  }
+  const std::vector<DirectionPair> pairs = hard_pairs(1000, kSeed);
+
+  for (const TableSymmetry symmetry : {TableSymmetry::Isotropic, TableSymmetry::Turn}) {
+    TableOptions options{.symmetry = symmetry, .reciprocal = true};
+    const ReciprocityGap gap = worst_reciprocity_gap(TabulatedSurface::make(readings, options).value(), pairs);
+    EXPECT_EQ(gap.ulps, 0u) << text_of(gap.pair.i, gap.pair.r) << ": " << gap.forth << " and " << gap.back;
+
+    options.reciprocal = false;
+    EXPECT_GT(worst_reciprocity_gap(TabulatedSurface::make(readings, options).value(), pairs).ulps, 0u);
   }
 }
 
