@@ -37,7 +37,7 @@ RadiometerReading reading_of(const std::vector<double>& samples) {
 ScpiRadiometer::ScpiRadiometer(UsbtmcLink& link, ScpiRadiometerConfig config, const Clock& clock)
     : config_(std::move(config)),
       clock_(clock),
-      session_(link, UsbtmcSessionConfig{.role = config_.role}, clock),
+      session_(link, UsbtmcSessionConfig{.role = config_.role, .transfer_timeout = config_.transfer_timeout}, clock),
       settings_(config_.settings) {}
 
 Error ScpiRadiometer::error(ErrorCode code, std::string tried, std::string seen, std::string limit) const {

@@ -16,10 +16,11 @@ struct ScpiRadiometerConfig {
   std::string role = "radiometer";  ///< named in errors: "detector" or "monitor" where it serves as one
   std::string serial;               ///< as *IDN? gives it
   RadiometerSettings settings;
-  Duration sample_time = std::chrono::milliseconds(3);     ///< of the meter, for each of its averages
-  Duration range_settle = std::chrono::milliseconds(200);  ///< after a change of range or wavelength, or a zero
-  Duration zero_time = std::chrono::seconds(30);           ///< at most
-  Duration reply_margin = std::chrono::milliseconds(500);  ///< beyond what a command takes by itself
+  Duration sample_time = std::chrono::milliseconds(3);         ///< of the meter, for each of its averages
+  Duration range_settle = std::chrono::milliseconds(200);      ///< after a change of range or wavelength, or a zero
+  Duration zero_time = std::chrono::seconds(30);               ///< at most
+  Duration reply_margin = std::chrono::milliseconds(500);      ///< beyond what a command takes by itself
+  Duration transfer_timeout = std::chrono::milliseconds(500);  ///< of what a device does at once
 };
 
 /// A bench power meter with the usual SCPI commands over USBTMC (README.md lists them).

@@ -44,9 +44,11 @@ double Instrument::scene_time_s(Instant t) const {
 }
 
 std::optional<Instant> Instrument::next_event() const {
-  const auto stage_event = stage_.next_event();
-  if (!running_) return stage_event;
-  return stage_event ? std::min(*stage_event, running_->close) : running_->close;
+  std::optional<Instant> next = stage_.next_event();
+  for (const auto* run : {&running_, &collecting_}) {
+    if (*run) next = std::min(next.value_or((*run)->close), (*run)->close);
+  }
+  return next;
 }
 
 void Instrument::advance_to(Instant now) {
@@ -56,6 +58,7 @@ void Instrument::advance_to(Instant now) {
     integrate_to(*due);
     stage_.advance_to(*due);
     if (running_ && running_->close <= *due) finish_exposure();
+    if (collecting_ && collecting_->close <= *due) finish_collection();
   }
   integrate_to(now_);
 }
@@ -87,16 +90,36 @@ std::optional<Exposure> Instrument::take_exposure(Instant now) {
   return std::exchange(finished_, std::nullopt);
 }
 
+void Instrument::start_collection(Duration duration, Instant now) {
+  assert(duration > Duration::zero());
+  advance_to(now);
+  collected_.reset();
+  collecting_ = Running{.open = now_, .close = now_ + duration, .integrated_to = now_};
+}
+
+std::optional<Instant> Instrument::collection_end() const {
+  return collecting_ ? std::optional<Instant>(collecting_->close) : std::nullopt;
+}
+
+std::optional<LightCollection> Instrument::take_collection(Instant now) {
+  advance_to(now);
+  return std::exchange(collected_, std::nullopt);
+}
+
 void Instrument::integrate_to(Instant t) {
-  if (!running_) return;
-  const Instant to = std::min(t, running_->close);
+  if (running_) integrate(*running_, t);
+  if (collecting_) integrate(*collecting_, t);
+}
+
+void Instrument::integrate(Running& run, Instant t) const {
+  const Instant to = std::min(t, run.close);
   // Within a stretch the shutters do not change: cut it where one arrives.
   std::array<Instant, 3> cuts{stage_.source_shutter().done, stage_.detector_shutter().done, to};
   std::ranges::sort(cuts);
   for (const Instant cut : cuts) {
-    if (cut <= running_->integrated_to || cut > to) continue;
-    running_->rate_integral += rate_integral(running_->integrated_to, cut);
-    running_->integrated_to = cut;
+    if (cut <= run.integrated_to || cut > to) continue;
+    run.rate_integral += rate_integral(run.integrated_to, cut);
+    run.integrated_to = cut;
   }
 }
 
@@ -132,6 +155,21 @@ void Instrument::finish_exposure() {
                        .light_electrons = after_nonlinearity(detector, light, truth_.nonlinearity()),
                        .dark_electrons = detector.dark_dn_per_s * detector.electrons_per_dn * (to_s - from_s),
                        .gain_db = run.gain_db};
+}
+
+void Instrument::finish_collection() {
+  const Running run = *collecting_;
+  collecting_.reset();
+  const double from_s = scene_time_s(run.open);
+  const double to_s = scene_time_s(run.close);
+  const double lamp = lamp_.mean(from_s, to_s);
+  const FilterSpec* filter = light_path_.filter_at(pose(run.close).positions[stage::index_of(Axis::FilterWheel)]);
+  collected_ =
+      LightCollection{.open = run.open,
+                      .close = run.close,
+                      .light = run.rate_integral * lamp / (scene_.detector.electrons_per_s * (to_s - from_s)),
+                      .lamp = lamp,
+                      .wavelength = filter == nullptr ? std::nullopt : std::optional<Wavelength>(filter->centroid)};
 }
 
 StagePose Instrument::pose(Instant t) const {

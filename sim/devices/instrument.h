@@ -23,6 +23,16 @@ struct ExposedPlace {
   friend auto operator<=>(const ExposedPlace&, const ExposedPlace&) = default;
 };
 
+/// What fell on a radiometer over a stretch of time, relative to a surface with REFF cos(theta_i) = 1, no filter and
+/// lamp power 1.
+struct LightCollection {
+  Instant open{};
+  Instant close{};
+  double light = 0.0;  ///< mean over the stretch, on the detector's side: sample, filter, shutters, lamp
+  double lamp = 0.0;   ///< mean of the lamp alone
+  std::optional<Wavelength> wavelength;  ///< of the filter that stands in the light at the end
+};
+
 /// What the instrument keeps from one run of the simulator to the next.
 struct InstrumentMemory {
   StageMemory stage;
@@ -60,6 +70,14 @@ class Instrument {
   /// The last finished exposure, once.
   [[nodiscard]] std::optional<Exposure> take_exposure(Instant now);
 
+  /// Begins to collect the light of a radiometer for `duration` > 0 of wall time, beside any exposure; one that is
+  /// under way is dropped.
+  void start_collection(Duration duration, Instant now);
+  void drop_collection() { collecting_.reset(); }
+  [[nodiscard]] std::optional<Instant> collection_end() const;
+  /// The last finished collection, once.
+  [[nodiscard]] std::optional<LightCollection> take_collection(Instant now);
+
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Truth& truth() const { return truth_; }
   [[nodiscard]] double monitor_now(Instant now) const { return lamp_.monitor_now(scene_time_s(now)); }
@@ -76,8 +94,10 @@ class Instrument {
   };
   [[nodiscard]] double scene_time_s(Instant t) const;
   void integrate_to(Instant t);
+  void integrate(Running& run, Instant t) const;
   [[nodiscard]] double rate_integral(Instant from, Instant to) const;
   void finish_exposure();
+  void finish_collection();
 
   Scene scene_;
   Truth truth_;
@@ -89,6 +109,8 @@ class Instrument {
   InstrumentMemory memory_;
   std::optional<Running> running_;
   std::optional<Exposure> finished_;
+  std::optional<Running> collecting_;
+  std::optional<LightCollection> collected_;
 };
 
 }  // namespace gonio::sim

@@ -35,9 +35,10 @@ class LightPath {
   [[nodiscard]] Station station(double carriage_mm) const;
   /// The encoders' directions with the zero and repeat errors of the truth.
   [[nodiscard]] Geometry true_geometry(const StagePose& pose) const;
+  /// The filter that stands in the light at this position of the wheel; null between filters.
+  [[nodiscard]] const FilterSpec* filter_at(double slot) const;
 
  private:
-  [[nodiscard]] const FilterSpec* filter_at(double slot) const;
   const Scene& scene_;
   const Truth& truth_;
 };

@@ -19,6 +19,7 @@ enum class Purpose : std::uint32_t {
   MonitorNow = 10,   ///< counter: cell of scene time
   Placing = 11,      ///< counter: move
   Pixels = 12,       ///< counter: exposure
+  Radiometer = 13,   ///< counter: sample
 };
 
 /// A stream of chance that depends on nothing but (seed, purpose, counter): how often one effect draws never shifts

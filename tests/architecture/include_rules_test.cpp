@@ -28,7 +28,7 @@ const std::map<std::string, Names>& allowed() {
       {"protocol/usbtmc", {"base"}},
       {"protocol/api", {"base"}},
       {"drivers", {"protocol/stage", "protocol/usbtmc", "base"}},
-      {"sim", {"protocol/stage", "reflectance", "base"}},
+      {"sim", {"protocol/stage", "protocol/usbtmc", "reflectance", "base"}},
       {"cli", {"protocol/api", "base"}},
       {"daemon", {"drivers", "calibration", "reflectance", "protocol/stage", "protocol/api", "base"}},
   };
@@ -38,7 +38,7 @@ const std::map<std::string, Names>& allowed() {
 // Header prefix of a foreign library, and in how many files of one room it may appear: one, its adapter.
 const std::vector<std::string>& foreign_headers() {
   static const std::vector<std::string> kForeign{"modbus", "arv.h",   "SQLiteCpp/", "sqlite3.h", "microhttpd.h",
-                                                 "curl/",  "toml++/", "CLI/",       "libusb"};
+                                                 "curl/",  "toml++/", "CLI/",       "libusb",    "umockdev.h"};
   return kForeign;
 }
 

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/units.h"
+#include "sim/devices/instrument.h"
+
+namespace gonio::sim {
+
+/// What the radiometer looks at: the sample through filters and shutters, or the lamp before all of them.
+enum class RadiometerPlace : std::uint8_t { Detector, Monitor };
+
+struct Responsivity {
+  Wavelength wavelength;
+  double a_per_w = 0.0;
+};
+
+/// One range; noise and offset as parts of its full scale.
+struct RadiometerRange {
+  double full_scale_w = 0.0;
+  double noise = 0.0;   ///< standard deviation of one average
+  double offset = 0.0;  ///< what it shows in the dark before a zero
+};
+
+/// A bench power meter with a photodiode. Times are scene time.
+struct RadiometerSpec {
+  std::string serial = "SIM-PM-01";
+  RadiometerPlace place = RadiometerPlace::Detector;
+  double watts = 1e-3;                             ///< on its diode for light (or lamp) 1
+  Wavelength lamp_wavelength = nanometres(568.0);  ///< of what a monitor sees
+  std::vector<Responsivity> responsivity;          ///< ascending wavelengths; linear between, limits of the setting
+  std::vector<RadiometerRange> ranges;             ///< ascending
+  double average_s = 0.003;                        ///< one average
+  double settle_s = 0.0;                           ///< time constant after a change of range; 0: at once
+  double settle_error = 0.05;                      ///< of full scale, right after it
+  double zero_s = 0.5;
+};
+/// Silicon from 400 nm to 1100 nm, five ranges from 1 uW to 10 mW, without noise, offset and settling.
+[[nodiscard]] RadiometerSpec quiet_radiometer();
+
+/// What one sample shows.
+struct RadiometerSample {
+  bool is_overload = false;
+  double power_w = 0.0;  ///< meaningless in an overload
+};
+
+/// The radiometer without its wire: settings, one sample at a time, zero. It measures current and shows power for the
+/// wavelength that it is set to. Threads: one at a time, as the instrument.
+class RadiometerModel {
+ public:
+  /// `instrument` must outlive it. `spec` has at least two responsivities and a range.
+  RadiometerModel(Instrument& instrument, RadiometerSpec spec);
+
+  /// False: outside of the responsivity's wavelengths.
+  bool set_wavelength(Wavelength wavelength);
+  /// Takes the smallest range that holds `power_w`, and no other by itself from then on. False: there is none.
+  bool set_range(double power_w, Instant now);
+  void set_auto_range(bool on) { is_auto_ = on; }
+  /// False: not 1 to 10000.
+  bool set_averages(int averages);
+  [[nodiscard]] Wavelength wavelength() const { return wavelength_; }
+  [[nodiscard]] double full_scale_w() const { return spec_.ranges[range_].full_scale_w; }
+  [[nodiscard]] bool is_auto_range() const { return is_auto_; }
+  [[nodiscard]] int averages() const { return averages_; }
+  [[nodiscard]] const RadiometerSpec& spec() const { return spec_; }
+
+  /// Begins a sample of `averages` averages; what is under way is dropped.
+  void start_sample(Instant now);
+  /// Begins to take the light that is there as zero.
+  void start_zero(Instant now);
+  void abort();
+  /// When what is under way ends.
+  [[nodiscard]] std::optional<Instant> due() const { return instrument_.collection_end(); }
+  /// The finished sample, once. With a range of its own choice the model measures again when the light outgrew it.
+  [[nodiscard]] std::optional<RadiometerSample> take_sample(Instant now);
+  /// The finished zero, once: false when there was too much light, and the zero is as it was.
+  [[nodiscard]] std::optional<bool> take_zero(Instant now);
+
+  /// As switched on: largest range, one average, no zero.
+  void power_up();
+
+ private:
+  enum class Task : std::uint8_t { None, Sample, Zero };
+  [[nodiscard]] double responsivity(Wavelength wavelength) const;
+  [[nodiscard]] double shown_w(const LightCollection& collection) const;
+  [[nodiscard]] double noise_w(std::size_t range, double averages);
+  [[nodiscard]] double unsettled_w(Instant at) const;
+  [[nodiscard]] std::size_t range_for(double power_w) const;
+  void change_range(std::size_t range, Instant now);
+
+  Instrument& instrument_;
+  RadiometerSpec spec_;
+  Wavelength wavelength_;
+  std::size_t range_ = 0;
+  bool is_auto_ = true;
+  int averages_ = 1;
+  std::vector<double> zero_w_;  ///< [range]
+  std::optional<Instant> range_changed_;
+  Task task_ = Task::None;
+  std::uint64_t samples_ = 0;  ///< over its life: the key of their noise
+};
+
+}  // namespace gonio::sim
