@@ -6,9 +6,10 @@
 
 namespace gonio::reflectance {
 
-/// What stands out in the rows: how much brighter it is within 10 deg of the retro direction, or of the mirror
-/// direction, than 15 to 35 deg away, (near - far) / (|near| + |far|), averaged over the incidences from 10 deg on.
-/// The stronger one is the feature when it exceeds 0.05. Below 10 deg the two cannot be told apart.
+/// What stands out in the rows: readings within 10 deg of the retro direction, or of the mirror direction, brighter by
+/// near - far > 0.05 (|near| + |far|) than those 15 to 35 deg away, summed over the incidences from 10 deg on (below,
+/// the two cannot be told apart). Where both stand out, as on a glossy retro-reflector, the one with the greater near -
+/// far.
 [[nodiscard]] Feature detected_feature(std::span<const TableRow> rows);
 
 }  // namespace gonio::reflectance
