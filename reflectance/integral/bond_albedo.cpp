@@ -17,14 +17,16 @@ constexpr int kLastLevel = 5;
 // azimuths for a surface that they matter to.
 RuleSum at_level(const Surface& surface, double relative_tolerance, int level) {
   const int azimuths = surface.is_isotropic() ? 1 : 4 << level;
+  const std::vector<EndNode>& rule = tanh_sinh(level);
+  const auto nodes = static_cast<double>(rule.size());
   RuleSum sum;
-  for (const EndNode& node : tanh_sinh(level)) {
+  for (const EndNode& node : rule) {
     const double mu = node.x;
     const double sin_theta = std::sqrt(node.rest * (1.0 + mu));
     const double weight = 2.0 * mu * node.weight / azimuths;
-    // What counts little need not be known well.
+    // What counts little need not be known well: all nodes together may be a fifth of the tolerance off.
     const double share = weight * azimuths;
-    const double tolerance = std::clamp(0.1 * relative_tolerance / share, 0.1 * relative_tolerance, 1e-2);
+    const double tolerance = std::clamp(0.1 * relative_tolerance / (share * nodes), 0.1 * relative_tolerance, 1e-2);
     for (int k = 0; k < azimuths; ++k) {
       const Angle phi = radians(2.0 * std::numbers::pi * k / azimuths);
       sum.add(rho_dh(surface, Direction::from_cosine(mu, sin_theta, phi), tolerance), weight);

@@ -4,6 +4,7 @@
 
 #include "reflectance/integral/hemisphere_integral.h"
 #include "reflectance/integral/polar_integral.h"
+#include "reflectance/integral/polar_ladder.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -21,8 +22,12 @@ Integral smooth_part(const Surface& surface, const Direction& i, double toleranc
   // Close to the horizon 1/(mu_i + mu_r) and its like bend within mu_i of it: too sharp for Gauss.
   constexpr double kGrazing = 0.03;
   if (i.mu() < kGrazing) return polar_integral(surface, i, Direction(), tolerance);
+  const PolarLadder ladder = climb_polar_ladder(surface, i, Direction(), tolerance);
+  if (ladder.settled) return *ladder.settled;
   const auto f = [&](const Direction& r) { return in_per_steradian(surface.eval(i, r)); };
-  return integrate_hemisphere(f, tolerance, RingSpacing::SqrtMu);
+  Integral integral = integrate_hemisphere(f, tolerance, RingSpacing::SqrtMu);
+  integral.evaluations += ladder.evaluations;
+  return integral;
 }
 
 // The surface with source and detector changed over.

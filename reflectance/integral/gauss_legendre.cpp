@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <mutex>
 #include <numbers>
 
 namespace gonio::reflectance {
@@ -25,10 +27,7 @@ LegendreValue legendre(int n, double x) {
   return {.p = p, .slope = n * (previous - x * p) / ((1.0 - x) * (1.0 + x))};
 }
 
-}  // namespace
-
-UnitRule gauss_legendre(int size) {
-  assert(size >= 1);
+UnitRule made(int size) {
   const auto count = static_cast<std::size_t>(size);
   UnitRule rule{.nodes = std::vector<double>(count), .weights = std::vector<double>(count)};
   for (std::size_t k = 0; k < (count + 1) / 2; ++k) {
@@ -47,6 +46,17 @@ UnitRule gauss_legendre(int size) {
     rule.weights[count - 1 - k] = weight;
   }
   return rule;
+}
+
+}  // namespace
+
+const UnitRule& gauss_legendre(int size) {
+  assert(size >= 1);
+  static std::mutex mutex;
+  static std::map<int, UnitRule> rules;  // whose elements stay where they are
+  const std::lock_guard lock(mutex);
+  const auto known = rules.find(size);
+  return known != rules.end() ? known->second : rules.emplace(size, made(size)).first->second;
 }
 
 }  // namespace gonio::reflectance

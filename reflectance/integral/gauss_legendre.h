@@ -10,7 +10,8 @@ struct UnitRule {
   std::vector<double> weights;  ///< sum to 1
 };
 
-/// Gauss-Legendre with `size` >= 1 (asserted) nodes, exact to polynomials of degree 2 size - 1, accurate to some 1e-16.
-[[nodiscard]] UnitRule gauss_legendre(int size);
+/// Gauss-Legendre with `size` >= 1 (asserted) nodes, exact to polynomials of degree 2 size - 1, accurate to some
+/// 1e-16. Made once a size and kept. Threads: any.
+[[nodiscard]] const UnitRule& gauss_legendre(int size);
 
 }  // namespace gonio::reflectance

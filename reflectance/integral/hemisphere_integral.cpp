@@ -23,7 +23,7 @@ RuleSum ring_sum(const std::function<double(const Direction&)>& s, int rings, Ri
 
 std::vector<HemisphereNode> gauss_rings(int rings, int azimuths, RingSpacing spacing) {
   assert(rings >= 1 && azimuths >= 1);
-  const UnitRule rule = gauss_legendre(rings);
+  const UnitRule& rule = gauss_legendre(rings);
   const double step = 2.0 * std::numbers::pi / azimuths;
   std::vector<HemisphereNode> nodes;
   nodes.reserve(static_cast<std::size_t>(rings) * static_cast<std::size_t>(azimuths));

@@ -13,7 +13,7 @@ struct EndNode {
 
 /// The double-exponential rule of Takahasi and Mori (1974) with step 2^-level, level 0 to 8 (asserted): takes an
 /// algebraic or logarithmic singularity at either end in its stride and squares its error from one level to the next.
-/// Some 7 x 2^level nodes.
-[[nodiscard]] std::vector<EndNode> tanh_sinh(int level);
+/// Some 7 x 2^level nodes, made once a level and kept. Threads: any.
+[[nodiscard]] const std::vector<EndNode>& tanh_sinh(int level);
 
 }  // namespace gonio::reflectance

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "reflectance/integral/polar_integral.h"
 #include "reflectance/surface/hapke.h"
 #include "reflectance/surface/surface_sum.h"
 #include "tests/reflectance/printed.h"
@@ -208,6 +209,41 @@ TEST(RhoDh, DoesNotDependOnTheAzimuthOfAnIsotropicSurface) {
   const double turned = rho_dh(wheat(), Direction::from_angles(60.0_deg, 123.0_deg), 1e-12).value;
 
   EXPECT_NEAR(turned, at_zero, 1e-13);
+  // A smooth surface in grazing light is integrated about its normal, which has no azimuth of its own.
+  const Surface forward = surface("hapke_hg", {{"omega0", 0.9}, {"g", 0.4}});
+  for (const Angle theta : {40.0_deg, 89.0_deg}) {
+    EXPECT_NEAR(rho_dh(forward, Direction::from_angles(theta, 123.0_deg), 1e-10).value,
+                rho_dh(forward, theta, 1e-10).value, 1e-10);
+  }
+}
+
+TEST(RhoDh, TakesFewEvaluationsWhereNothingIsSharp) {
+  EXPECT_LE(rho_dh(wheat(), 30.0_deg, 1e-6).evaluations, 600u);
+  EXPECT_LE(rho_dh(sea(), 30.0_deg, 1e-6).evaluations, 2400u);
+}
+
+TEST(RhoDh, IsTheSameByTheExactAsByTheFastPath) {
+  // FormulaHidden has no kernel.
+  const double exact = rho_dh(FormulaHidden{wheat()}, 50.0_deg, 1e-6).value;
+  EXPECT_NEAR(rho_dh(wheat(), 50.0_deg, 1e-12).value, exact, 1e-6);
+  EXPECT_NEAR(polar_integral(FormulaHidden{wheat()}, Direction::from_angles(50.0_deg, {}),
+                             Direction::from_angles(50.0_deg, {}), 1e-12)
+                  .value,
+              rho_dh(wheat(), 50.0_deg, 1e-12).value, 1e-14);
+}
+
+TEST(RhoDh, StatesAnErrorThatHoldsWhereTheLadderIsTempted) {
+  // Lobes on either side of what evenly spread nodes can meet.
+  for (const double variance : {1e-3, 0.01, 0.03, 0.15, 1.0}) {
+    for (const double theta : {0.0, 45.0, 70.0, 74.0, 80.0}) {
+      const Surface s = surface("glint_smith", {{"slope_variance", variance}, {"refractive_index", 1.34}});
+      const Integral close = rho_dh(s, degrees(theta), 1e-9);
+      for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+        const Integral rho = rho_dh(s, degrees(theta), tolerance);
+        EXPECT_LE(std::abs(rho.value - close.value), rho.error + close.error) << variance << " at " << theta;
+      }
+    }
+  }
 }
 
 // f = a + b sin(phi_r) sin(theta_r) + c cos(2 phi_i): neither a turn nor a mirror image leaves it as it is.
