@@ -123,8 +123,14 @@ Integral irradiance_of(const LightSource& source, double relative_tolerance, Wat
     const double mu = Direction::from_angles(disk->place().theta, Angle{}).mu();
     return Integral::closed(disk->radiance() * std::numbers::pi * sine * sine * mu);
   }
-  return refined(kFirstLevel, kLastLevel, relative_tolerance,
-                 [&](int level) { return irradiance_at(source, level, watch); });
+  Integral result = refined(kFirstLevel, kLastLevel, relative_tolerance,
+                            [&](int level) { return irradiance_at(source, level, watch); });
+  // Where the horizon cuts a disk is known to the rounding of its angles.
+  constexpr double kAngleRounding = 1e-15;
+  if (const auto* disk = std::get_if<SunDisk>(&source)) {
+    result.error += result.value * kAngleRounding / disk->place().radius.si();
+  }
+  return result;
 }
 
 Integral sent_up(const Surface& leaf, const LightSource& source, double relative_tolerance, Watch& watch) {
