@@ -38,7 +38,7 @@ Method method(std::string name, Cubature cubature, Integrand integrand, double f
                  &error);
         return Estimate{value, call.evaluations};
       };
-      all.push_back({tolerance_text(tolerance), run});
+      all.push_back({tolerance_text(tolerance), repeated(run)});
     }
     return all;
   };

@@ -52,7 +52,7 @@ Method method(std::string name, const Settings& settings, Make make, Text text) 
     std::vector<Rung> all;
     for (const auto& setting : settings) {
       const auto run = [&c, i = c.incidence(), nodes = make(setting)] { return weighted_sum(c, i, nodes); };
-      all.push_back({text(setting), run});
+      all.push_back({text(setting), repeated(run)});
     }
     return all;
   };

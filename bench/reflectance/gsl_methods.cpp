@@ -81,7 +81,7 @@ Method method(std::string name) {
     std::vector<Rung> all;
     for (const double tolerance : tolerance_ladder(1e-9, 2)) {
       const auto run = [&c, i = c.incidence(), tolerance] { return Nested<Rule>{c, i, tolerance}.run(); };
-      all.push_back({tolerance_text(tolerance), run});
+      all.push_back({tolerance_text(tolerance), repeated(run)});
     }
     return all;
   };

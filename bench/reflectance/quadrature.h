@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "bench/reflectance/cases.h"
+#include "reflectance/integral/prepared_reflectance.h"
 
 namespace gonio::bench {
 
 enum class Family : std::uint8_t {
   Ours,      ///< rho_dh as the room offers it
+  Prepared,  ///< PreparedReflectance, made beforehand
   OurPart,   ///< one of the methods that it chooses from
   Grid,      ///< a fixed set of directions, made beforehand
   Adaptive,  ///< a general library quadrature, asked for a tolerance
@@ -21,11 +23,25 @@ struct Estimate {
   std::uint64_t evaluations = 0;
 };
 
-/// One setting of a method, ready to be run on one case.
+/// One setting of a method, ready to be run on one case, many times in one call: a reading of 10 ns would be lost in
+/// the cost of the call.
 struct Rung {
   std::string setting;
-  std::function<Estimate()> run;
+  std::function<Estimate(long repeats)> run;
 };
+
+/// `once` as a Rung runs it; the compiler may not take one repeat for another.
+template <class F>
+[[nodiscard]] std::function<Estimate(long)> repeated(F once) {
+  return [once](long repeats) {
+    Estimate estimate;
+    for (long k = 0; k < repeats; ++k) {
+      estimate = once();
+      asm volatile("" : : "g"(&estimate) : "memory");
+    }
+    return estimate;
+  };
+}
 
 /// A way to rho_dh with its settings from coarse to fine.
 struct Method {
@@ -39,6 +55,13 @@ struct Method {
 [[nodiscard]] std::vector<Method> grid_methods();
 [[nodiscard]] std::vector<Method> cubature_methods();  ///< S. G. Johnson's cubature: hcubature and pcubature
 [[nodiscard]] std::vector<Method> gsl_methods();       ///< GSL: QAGS and CQUAD, one inside the other
+
+/// A surface that has been prepared, and how long that took.
+struct Prepared {
+  reflectance::PreparedReflectance reflectance;
+  double seconds = 0.0;
+};
+[[nodiscard]] const Prepared& prepared(const Case& c, double tolerance);
 
 /// Tolerances from 1e-1 to `finest`, `per_decade` of them in each decade.
 [[nodiscard]] std::vector<double> tolerance_ladder(double finest, int per_decade);
