@@ -294,7 +294,7 @@ gboolean UsbBus::Impl::serve_clear_halt(UMockdevIoctlClient* client, UMockdevIoc
 gboolean UsbBus::Impl::submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   Urb urb{.owner = another(client), .urb = resolved(argument, 0, sizeof(usbdevfs_urb)), .buffer = {}, .bytes = {}};
   if (urb.urb == nullptr) return complete(client, -1, EFAULT);
-  usbdevfs_urb asked{};
+  usbdevfs_urb asked;  // not initialised: its array of no elements cannot be
   std::memcpy(&asked, urb.urb->data, sizeof asked);
   urb.address = urb.urb->client_addr;
   urb.type = asked.type;
