@@ -54,16 +54,14 @@ bool stands_out(const Brightness& b) {
 
 }  // namespace
 
-Feature detected_feature(std::span<const TableRow> rows) {
+DetectedFeature detected_feature(std::span<const TableRow> rows) {
   const Brightness retro = brightness(rows, 1.0);
   const Brightness mirror = brightness(rows, -1.0);
   const bool has_retro = stands_out(retro);
   const bool has_mirror = stands_out(mirror);
-  if (has_retro && has_mirror) {
-    return retro.near - retro.far >= mirror.near - mirror.far ? Feature::HotSpot : Feature::Lobe;
-  }
-  if (has_retro) return Feature::HotSpot;
-  return has_mirror ? Feature::Lobe : Feature::Smooth;
+  if (!has_retro && !has_mirror) return {};
+  const bool is_retro = has_retro && (!has_mirror || retro.near - retro.far >= mirror.near - mirror.far);
+  return {.feature = is_retro ? Feature::HotSpot : Feature::Lobe, .is_double = has_retro && has_mirror};
 }
 
 }  // namespace gonio::reflectance

@@ -10,6 +10,10 @@ namespace gonio::reflectance {
 /// near - far > 0.05 (|near| + |far|) than those 15 to 35 deg away, summed over the incidences from 10 deg on (below,
 /// the two cannot be told apart). Where both stand out, as on a glossy retro-reflector, the one with the greater near -
 /// far.
-[[nodiscard]] Feature detected_feature(std::span<const TableRow> rows);
+struct DetectedFeature {
+  Feature feature = Feature::Smooth;
+  bool is_double = false;  ///< the other one stands out too
+};
+[[nodiscard]] DetectedFeature detected_feature(std::span<const TableRow> rows);
 
 }  // namespace gonio::reflectance

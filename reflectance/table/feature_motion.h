@@ -51,4 +51,15 @@ struct IncidenceTilt {
           .z = std::max(0.0, c * to.mu + s * cos_psi * to.sin_theta)};
 }
 
+/// Where two features move at once, the retro direction's and the mirror's: how much `r` belongs to the first, by the
+/// fourth powers of its distances to the two. 0 to 1.
+[[nodiscard]] inline double retro_share(const Vector& r, const IncidenceTilt& i) {
+  const double aside2 = r.y * r.y + (r.z - i.mu) * (r.z - i.mu);
+  const double to_retro2 = (r.x - i.sin_theta) * (r.x - i.sin_theta) + aside2;
+  const double to_mirror2 = (r.x + i.sin_theta) * (r.x + i.sin_theta) + aside2;
+  const double retro4 = to_retro2 * to_retro2;
+  const double mirror4 = to_mirror2 * to_mirror2;
+  return retro4 + mirror4 > 0.0 ? mirror4 / (retro4 + mirror4) : 0.5;
+}
+
 }  // namespace gonio::reflectance

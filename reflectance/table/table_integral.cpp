@@ -12,19 +12,25 @@ namespace {
 // Gauss orders, raised one by one.
 constexpr std::array kOrders{2, 3, 5, 8};
 
-// The share of one measured incidence: over its own cells, each node carried to where the incidence i sees it.
+// The share of one measured incidence: over its own cells, each node carried to where the incidence i sees it, with
+// each feature that moves.
 [[nodiscard]] bool add_row(const TabulatedSurface& table, const IncidenceBracket::Share& share, const Direction& i,
                            int order, RuleSum& sum) {
   const TableRow& row = table.row(share.row);
   const IncidenceTilt tilt{.mu = i.mu(), .sin_theta = i.sin_theta()};
+  const bool is_double = table.options().both_features;
   const double c = std::cos(i.phi().si());
   const double s = std::sin(i.phi().si());
   return row.quadrature(order, [&](const Vector& place, double solid_angle) {
     const Vector seen =
         share.is_absolute ? Vector{c * place.x + s * place.y, c * place.y - s * place.x, place.z} : place;
+    const double term = share.weight * row.value(place) * solid_angle;
     double stretch = 1.0;
-    const Vector r = moved(seen, row.tilt(), tilt, table.feature(), &stretch);
-    sum.add(share.weight * row.value(place) * r.z * stretch * solid_angle);
+    const Vector r = moved(seen, row.tilt(), tilt, is_double ? Feature::HotSpot : table.feature(), &stretch);
+    sum.add(term * r.z * stretch * (is_double ? retro_share(r, tilt) : 1.0));
+    if (!is_double) return;
+    const Vector other = moved(seen, row.tilt(), tilt, Feature::Lobe, &stretch);
+    sum.add(term * other.z * stretch * (1.0 - retro_share(other, tilt)));
   });
 }
 

@@ -34,6 +34,9 @@ struct TableOptions {
   /// What moves with the incidence, so that between two of them it stands between, once; found in the readings when
   /// absent.
   std::optional<Feature> feature = std::nullopt;
+  /// The other one of hot spot and lobe moves too, each view with the one that it is closer to; found in the readings
+  /// when `feature` is absent.
+  bool both_features = false;
   /// f(i, r) and f(r, i) are made one: each counts by its closeness to readings.
   bool reciprocal = false;
   /// Directions closer than this are one: encoders do not repeat to the last digit. 1e-4 to 5 deg.

@@ -40,21 +40,38 @@ std::vector<double> profile_arcs(const TableRow& row, Feature feature) {
   return kept;
 }
 
-// The surface at theta_i = 0, where no azimuth counts: what is left of a row when it is averaged over a turn.
-TableRow normal_row(const TableRow& first, Feature feature, const TableOptions& options) {
+// The surface at theta_i = 0, where no azimuth counts: what is left of a row when it is averaged over a turn, as it
+// lies about each of its features. There the two are as close to any view.
+TableRow normal_row(const TableRow& first, const TableOptions& options) {
   constexpr int kAzimuths = 72;
+  std::vector<Feature> features{*options.feature};
+  if (options.both_features) features = {Feature::HotSpot, Feature::Lobe};
+  const double weight = 1.0 / (kAzimuths * static_cast<double>(features.size()));
   std::vector<TableNode> nodes;
-  for (const double theta : profile_arcs(first, feature)) {
+  for (const double theta : profile_arcs(first, features.front())) {
     TableNode mean{.r = {.x = std::sin(theta), .y = 0.0, .z = std::cos(theta)}};
     for (int k = 0; k < kAzimuths; ++k) {
       const Vector r = turned(mean.r, radians(2.0 * std::numbers::pi * (k + 0.5) / kAzimuths));
-      const TableRow::Value value = first.value_and_more(moved(r, {}, first.tilt(), feature));
-      mean.f += value.f / kAzimuths;
-      mean.u += value.u / kAzimuths;
+      for (const Feature feature : features) {
+        const TableRow::Value value = first.value_and_more(moved(r, {}, first.tilt(), feature));
+        mean.f += weight * value.f;
+        mean.u += weight * value.u;
+      }
     }
     nodes.push_back(mean);
   }
   return TableRow::make(Angle{}, Angle{}, std::move(nodes), RowAzimuths::None, options).value();
+}
+
+// What was not declared is found.
+TableOptions with_feature(TableOptions options, std::span<const TableRow> rows) {
+  if (!options.feature) {
+    const DetectedFeature found = detected_feature(rows);
+    options.feature = found.feature;
+    options.both_features = found.is_double;
+  }
+  options.both_features = options.both_features && options.feature != Feature::Smooth;
+  return options;
 }
 
 bool is_normal(const TableRow& row, const TableOptions& options) {
@@ -72,16 +89,15 @@ std::vector<RowIncidence> incidences(std::span<const TableRow> rows) {
 }  // namespace
 
 TabulatedSurface::TabulatedSurface(std::vector<TableRow> rows, const TableOptions& options, TableReport report)
-    : options_(options),
-      feature_(options.feature ? *options.feature : detected_feature(rows)),
+    : options_(with_feature(options, rows)),
+      feature_(*options_.feature),
       rows_(std::make_shared<const std::vector<TableRow>>(std::move(rows))),
       report_(std::make_shared<const TableReport>(std::move(report))),
       index_(incidences(*rows_), options) {
-  options_.feature = feature_;
   const auto first = std::min_element(rows_->begin(), rows_->end(),
                                       [](const TableRow& a, const TableRow& b) { return a.theta_i() < b.theta_i(); });
   if (options.symmetry == TableSymmetry::Anisotropic || is_normal(*first, options)) return;
-  normal_row_ = std::make_shared<const TableRow>(normal_row(*first, feature_, options));
+  normal_row_ = std::make_shared<const TableRow>(normal_row(*first, options_));
   std::vector<RowIncidence> list = incidences(*rows_);
   list.push_back({.theta_i = {}, .phi_i = {}, .row = rows_->size()});
   index_ = IncidenceIndex(list, options);
@@ -98,31 +114,45 @@ Vector TabulatedSurface::in_frame(const Direction& i, const Direction& r) const 
   return {.x = r.sin_theta() * std::cos(turn), .y = is_isotropic() ? std::abs(y) : y, .z = r.mu()};
 }
 
-double TabulatedSurface::one_way(const Direction& i, const Direction& r) const {
-  const IncidenceBracket bracket = index_.bracket(i);
-  const Vector seen = in_frame(i, r);
-  double f = 0.0;
+// Calls use(row, direction in the row's frame, weight) for all that the value under i is made of.
+template <class Use>
+void TabulatedSurface::at_places(const IncidenceBracket& bracket, const Direction& i, const Vector& seen,
+                                 Use use) const {
+  const IncidenceTilt tilt = tilt_of(i);
+  const double retro = options_.both_features ? retro_share(seen, tilt) : 1.0;
   for (const IncidenceBracket::Share& share : bracket.shares()) {
     const TableRow& from = row(share.row);
-    const Vector place = moved(seen, tilt_of(i), from.tilt(), feature_);
-    f += share.weight * from.value(share.is_absolute ? turned(place, i.phi()) : place);
+    const auto place = [&](Feature feature) {
+      const Vector p = moved(seen, tilt, from.tilt(), feature);
+      return share.is_absolute ? turned(p, i.phi()) : p;
+    };
+    if (options_.both_features) {
+      use(from, place(Feature::HotSpot), share.weight * retro);
+      use(from, place(Feature::Lobe), share.weight * (1.0 - retro));
+    } else {
+      use(from, place(feature_), share.weight);
+    }
   }
+}
+
+double TabulatedSurface::one_way(const Direction& i, const Direction& r) const {
+  double f = 0.0;
+  at_places(index_.bracket(i), i, in_frame(i, r),
+            [&](const TableRow& from, const Vector& place, double weight) { f += weight * from.value(place); });
   return f;
 }
 
 TabulatedSurface::Known TabulatedSurface::known_one_way(const Direction& i, const Direction& r) const {
   const IncidenceBracket bracket = index_.bracket(i);
-  const Vector seen = in_frame(i, r);
   Known known{.is_covered = bracket.is_covered, .distance = bracket.distance};
-  for (const IncidenceBracket::Share& share : bracket.shares()) {
-    const TableRow& from = row(share.row);
-    const Vector place = moved(seen, tilt_of(i), from.tilt(), feature_);
-    const TableRow::Value value = from.value_and_more(share.is_absolute ? turned(place, i.phi()) : place);
-    known.f += share.weight * value.f;
-    known.u += share.weight * value.u;
-    known.distance += share.weight * value.distance;
-    known.is_covered = known.is_covered && value.is_covered;
-  }
+  at_places(bracket, i, in_frame(i, r), [&](const TableRow& from, const Vector& place, double weight) {
+    constexpr double kCounts = 1e-3;
+    const TableRow::Value value = from.value_and_more(place);
+    known.f += weight * value.f;
+    known.u += weight * value.u;
+    known.distance += weight * value.distance;
+    known.is_covered = known.is_covered && (value.is_covered || weight < kCounts);
+  });
   return known;
 }
 

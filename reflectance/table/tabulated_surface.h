@@ -77,6 +77,8 @@ class TabulatedSurface {
   [[nodiscard]] double one_way(const Direction& i, const Direction& r) const;
   [[nodiscard]] Known both_ways(const Direction& i, const Direction& r) const;
   [[nodiscard]] Vector in_frame(const Direction& i, const Direction& r) const;
+  template <class Use>
+  void at_places(const IncidenceBracket& bracket, const Direction& i, const Vector& seen, Use use) const;
 
   TableOptions options_;
   Feature feature_;

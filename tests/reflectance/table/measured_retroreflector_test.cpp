@@ -58,6 +58,7 @@ TEST(MeasuredRetroreflector, KeepsItsHotSpotAndItsEnergy) {
   ASSERT_GT(readings->size(), 7000u);
   const TabulatedSurface t = TabulatedSurface::make(*readings, {.symmetry = TableSymmetry::Turn}).value();
   EXPECT_EQ(t.report().incidences, 3u);
+  EXPECT_TRUE(t.options().both_features) << "a glossy sheet over the retro-reflector";
 
   // Read where it was read.
   for (std::size_t k = 0; k < readings->size(); k += 7) {
@@ -70,6 +71,12 @@ TEST(MeasuredRetroreflector, KeepsItsHotSpotAndItsEnergy) {
     // Retro-reflection stays at retro-reflection between the incidences, and is 8 to 14 per sr at all three.
     EXPECT_GT(in_per_steradian(t.eval(i, i)), 7.0) << theta;
     EXPECT_LT(in_per_steradian(t.eval(i, i)), 20.0) << theta;
+    // The gloss is at the mirror direction, once: not where the neighbours have theirs.
+    EXPECT_GT(in_per_steradian(t.eval(i, mirrored(i))), 7.0) << theta;
+    for (const double ghost : {15.0, 30.0, 60.0}) {
+      if (std::abs(ghost - theta) < 10.0) continue;
+      EXPECT_LT(in_per_steradian(t.eval(i, Direction::from_angles(degrees(ghost), degrees(180.0)))), 1.0) << theta;
+    }
     const Integral rho = rho_dh(t, i, 1e-3);
     EXPECT_GT(rho.value, 0.4) << theta;
     EXPECT_LT(rho.value, 1.0) << theta;
