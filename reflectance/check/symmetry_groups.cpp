@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "reflectance/direction/axis_angles.h"
+#include "reflectance/convention/axis_angles.h"
 #include "reflectance/direction/direction_pair.h"
 
 namespace gonio::reflectance {

@@ -1,4 +1,4 @@
-#include "reflectance/direction/notation.h"
+#include "reflectance/convention/notation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(Notation, UsesEachSymbolOnceInABook) {
 }
 
 TEST(Notation, StandsInItsDocumentAsItIs) {
-  std::ifstream file(GONIO_SOURCE_DIR "/reflectance/direction/NOTATION.md");
+  std::ifstream file(GONIO_SOURCE_DIR "/reflectance/convention/NOTATION.md");
   std::stringstream text;
   text << file.rdbuf();
 

@@ -1,4 +1,4 @@
-#include "reflectance/direction/axis_angles.h"
+#include "reflectance/convention/axis_angles.h"
 
 #include <algorithm>
 #include <cmath>

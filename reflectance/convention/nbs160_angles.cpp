@@ -1,8 +1,8 @@
-#include "reflectance/direction/nbs160_angles.h"
+#include "reflectance/convention/nbs160_angles.h"
 
 #include <numbers>
 
-#include "reflectance/direction/axis_angles.h"
+#include "reflectance/convention/axis_angles.h"
 
 namespace gonio::reflectance {
 

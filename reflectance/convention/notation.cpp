@@ -1,4 +1,4 @@
-#include "reflectance/direction/notation.h"
+#include "reflectance/convention/notation.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
-#include "reflectance/direction/hapke_angles.h"
+#include "reflectance/convention/hapke_angles.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "reflectance/direction/axis_angles.h"
+#include "reflectance/convention/axis_angles.h"
 
 namespace gonio::reflectance {
 

@@ -5,11 +5,11 @@
 #include <functional>
 #include <limits>
 
-#include "reflectance/direction/forward_angles.h"
-#include "reflectance/direction/hapke_angles.h"
-#include "reflectance/direction/nbs160_angles.h"
-#include "reflectance/direction/rusinkiewicz_angles.h"
-#include "reflectance/direction/specular_centred_angles.h"
+#include "reflectance/convention/forward_angles.h"
+#include "reflectance/convention/hapke_angles.h"
+#include "reflectance/convention/nbs160_angles.h"
+#include "reflectance/convention/rusinkiewicz_angles.h"
+#include "reflectance/convention/specular_centred_angles.h"
 #include "tests/reflectance/generated.h"
 
 namespace gonio::reflectance {

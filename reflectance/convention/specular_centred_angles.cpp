@@ -1,9 +1,9 @@
-#include "reflectance/direction/specular_centred_angles.h"
+#include "reflectance/convention/specular_centred_angles.h"
 
 #include <cmath>
 #include <string_view>
 
-#include "reflectance/direction/axis_angles.h"
+#include "reflectance/convention/axis_angles.h"
 
 namespace gonio::reflectance {
 
