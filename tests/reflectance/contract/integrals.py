@@ -1,8 +1,19 @@
 """The hemispherical integrals of formulas.py, each in coordinates of its own choice."""
-from mpmath import cos, erfc, exp, mpf, pi, sin, sqrt, tan
+from mpmath import acos, cos, exp, mpf, pi, sin, sqrt, tan
 
 from formulas import (fresnel, h_approximate, hg_azimuth_integral, smith_lambda, water_body_with)
 from quadrature import beyond, over
+
+
+def minnaert_rho_dh(p, theta, level=5):
+    rho, k = p
+    return over(lambda mu, *_: 2 * rho * (cos(theta) * mu) ** k * mu, mpf(0), mpf(1), level)
+
+
+def minnaert_albedo(p):
+    rho, k = p
+    return over(lambda mu, *_: 2 * mu * over(lambda m, *_: 2 * rho * (mu * m) ** k * m, mpf(0), mpf(1), 4), mpf(0), mpf(1),
+                4)
 
 
 def rpv_rho_dh(p, theta, level):
@@ -21,12 +32,6 @@ def rpv_rho_dh(p, theta, level):
 
     inside = over(ring, mpf(0), t, level) if t > 0 else 0
     return inside + beyond(ring, t, 1, level)
-
-
-def rpv_albedo(p, level):
-    """mu = x^2, so that the powers of mu at the horizon are tame."""
-    from mpmath import acos
-    return over(lambda x, *_: 4 * x**3 * rpv_rho_dh(p, acos(x * x), level), mpf(0), mpf(1), level - 1)
 
 
 def glint_rho_dh(p, theta, level, shadows=False, reflect=fresnel):
@@ -54,6 +59,11 @@ def glint_rho_dh(p, theta, level, shadows=False, reflect=fresnel):
         return over(lambda s, *_: element(s, c), mpf(0), min(last, 12 * sigma), level)
 
     return 2 * (over(ray, mpf(0), pi / 2, level) + over(ray, pi / 2, pi, level))
+
+
+def glint_albedo(p, level):
+    """mu = x^2, so that the powers of mu at the horizon are tame; below 1e-10 it has no weight."""
+    return over(lambda x, *_: 4 * x**3 * glint_rho_dh(p, acos(x * x), level), mpf("1e-5"), mpf(1), level - 1)
 
 
 def hapke_rho_dh(a, w, mu_i, level=5):

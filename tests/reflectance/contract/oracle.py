@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the tables *.inc of this folder: needs mpmath (python3-mpmath) and takes some ten minutes.
 
-    python3 oracle.py separations fresnel points integrals
+    python3 oracle.py separations fresnel points hard integrals
 
 Every value is that of a textbook formula (formulas.py, integrals.py) at the very doubles that the library is given,
 angles in radians included, with 30 to 120 digits. Points carry their condition: the sum over the inputs x of
@@ -16,7 +16,9 @@ from mpmath import acos, cos, exp, mp, mpf, nstr, pi, quad, sin, sqrt
 import formulas
 import integrals
 from formulas import Direction, cos_phase, fresnel_p, fresnel_s, log_h_of, phase_angle, retro_distance
-from integrals import fresnel_albedo
+from integrals import (fresnel_albedo, glint_albedo, glint_rho_dh, hapke_albedo, hapke_hg_albedo, hapke_hg_rho_dh,
+                       hapke_rho_dh, minnaert_albedo, minnaert_rho_dh, rpv_rho_dh, water_body_albedo,
+                       water_body_rho_dh)
 
 SEED = 20260815
 
@@ -209,6 +211,89 @@ def points():
     write("oracle_surfaces", [row(f'"{m}"', "{" + ", ".join(map(repr, v)) + "}") for m, v in SURFACES])
 
 
+def sea_variance(wind):
+    return mpf("0.003") + mpf("0.00512") * wind
+
+
+def approximate_hapke(a):
+    return (lambda p, theta: hapke_rho_dh(a, p[0], cos(theta)), lambda p: hapke_albedo(a, p[0]))
+
+
+# model -> (rho_dh(parameters, theta), A(parameters))
+INTEGRALS = {
+    "minnaert": (minnaert_rho_dh, minnaert_albedo),
+    "hapke": approximate_hapke(2),
+    "hapke_as_printed": approximate_hapke(1),
+    "hapke_exact": (lambda p, theta: 1 - sqrt(1 - p[0]) * EXACT_H(p[0], cos(theta)), None),
+    "hapke_hg": (lambda p, theta: hapke_hg_rho_dh(*p, cos(theta), level=6), lambda p: hapke_hg_albedo(*p)),
+    "rpv": (lambda p, theta: rpv_rho_dh(p, theta, 5 if theta > 0.8 else 4), None),
+    "rpv_brf": (lambda p, theta: rpv_rho_dh(p, theta, 5 if theta > 0.8 else 4) / pi, None),
+    "water_body": (lambda p, theta: water_body_rho_dh(p, cos(theta)), water_body_albedo),
+    "glint": (lambda p, theta: glint_rho_dh(p, theta, 5 if theta > 0.4 else 4), lambda p: glint_albedo(p, 4)),
+    "glint_smith": (lambda p, theta: glint_rho_dh(p, theta, 5 if theta > 0.4 else 4, True), None),
+    "cox_munk": (lambda p, theta: glint_rho_dh([sea_variance(p[0]), p[1]], theta, 5), None),
+}
+
+# (model, parameters, thetas [rad], whether A is asked for)
+INTEGRATED = [
+    ("minnaert", [0.5, 0.5], [0.0, 0.9, 1.57], True), ("minnaert", [0.2, -0.5], [0.3, 1.5], True),
+    ("hapke", [1e-6], [0.0, 1.2], True), ("hapke", [0.3], [0.4, 1.5], True), ("hapke", [0.75], [1e-9, 1e-3, 1.0], True),
+    ("hapke", [0.999], [0.7, 1.57], True), ("hapke", [1.0 - 1e-8], [0.0, 1.3], True),
+    ("hapke", [1.0 - 1e-14], [0.0, 1.1], True), ("hapke_as_printed", [0.75], [1e-9, 1.4], True),
+    ("hapke_as_printed", [1.0 - 1e-14], [0.2, 1.0], True),
+    ("hapke_exact", [1e-3], [0.3, 1.4], False), ("hapke_exact", [0.999], [0.0, 1.0], False),
+    ("hapke_exact", [1.0 - 1e-14], [0.5, 1.5], False),
+    ("hapke_hg", [0.9, -0.3], [0.0, 0.5, 1.2, 1.5], True), ("hapke_hg", [0.5, 0.7], [0.0, 1.3], True),
+    ("hapke_hg", [0.7, -0.95], [0.2, 1.0], False), ("hapke_hg", [0.99, 0.99], [0.5, 1.4], False),
+    ("hapke_hg", [0.3, -0.999], [0.7], False),
+    ("rpv", [0.05, 0.0, -0.3], [0.0, 0.7, 1.1], False), ("rpv", [0.9, 0.4, 0.2], [0.3, 1.3], False),
+    ("rpv", [0.02, 1.5, -0.9], [0.5, 1.0], False), ("rpv", [1.0, 2.0, 0.6], [0.2, 1.2], False),
+    ("rpv", [0.133, 0.851, -0.114], [1.5], False), ("rpv_brf", [0.2, 0.7, -0.6], [0.6, 1.0], False),
+    ("water_body", [0.3, 1.001], [0.4, 1.5], True), ("water_body", [0.9, 4.0], [0.0, 1.57], True),
+    ("glint", [1e-6, 1.34], [0.0, 0.9], False), ("glint", [1e-3, 1.5], [0.5, 1.3], False),
+    ("glint", [0.3, 1.0001], [0.4, 1.2], False),
+    ("glint", [1.0, 4.0], [0.1, 1.0], False), ("cox_munk", [3.0, 1.34], [0.8, 1.4], False),
+    ("glint_smith", [1e-4, 1.34], [1.0, 1.5], False), ("glint_smith", [1.0, 1.5], [0.6, 1.3], False),
+    ("glint", [0.0542, 1.34], [], True),
+]
+
+
+def integral_tables():
+    mp.dps = 20
+    write("oracle_fresnel_albedo", [row(repr(n), digits(fresnel_albedo(mpf(n)), 18))
+                                    for n in (0.1, 0.5, 0.75, 0.999, 1.0001, 1.1, 1.34, 2.0, 4.0, 100.0)])
+    rho_rows, albedo_rows = [], []
+    for model, values, thetas, with_albedo in INTEGRATED:
+        print(model, values, file=sys.stderr)
+        mp.dps = 25 if "exact" in model else 20
+        rho_dh, albedo = INTEGRALS[model]
+        surface = row(f'"{model}"', "{" + ", ".join(map(repr, values)) + "}")[:-2]
+        for theta in thetas:
+            rho_rows.append(row(surface, repr(theta), digits(rho_dh(doubles(values), mpf(theta)), 18)))
+        if with_albedo:
+            albedo_rows.append(row(surface, digits(albedo(doubles(values)), 18)))
+        write("oracle_rho_dh", rho_rows)
+        write("oracle_albedo", albedo_rows)
+
+
+def hard():
+    """What single tests need: Hapke's rho_dh at its limits, phase functions at their peaks, the critical angle."""
+    mp.dps = 40
+    limits = [(2, c, m) for c in (1e-8, 1e-12, 1e-14, 1e-16) for m in (1.0, 0.5)]
+    limits += [(a, 0.25, 1.0 - d) for a in (1, 2) for d in (0.0, 2.0**-43, 2.0**-40, 2.0**-20, 2.0**-10)]
+    write("oracle_hapke_limits", [row(str(a), repr(c), repr(m), digits(hapke_rho_dh(a, 1 - mpf(c), mpf(m), 6)))
+                                  for a, c, m in limits])
+    mp.dps = 80
+    peaks = [(-0.999999, (THETA, 0.5, 0.0), (THETA, 0.5 + d, 0.0)) for d in (1e-5, 1e-7, 1e-9, 1e-12)]
+    peaks += [(0.999999, (ELEVATION, e, 0.0), (ELEVATION, 2.0 * e, math.pi)) for e in (1e-5, 1e-7, 1e-9, 1e-12)]
+    write("oracle_phase_peaks", [row(repr(g), words(*i), words(*r), digits(formulas.henyey_greenstein(
+        mpf(g), direction(*i), direction(*r)))) for g, i, r in peaks])
+    n = 1 / 1.34
+    thetas = [math.asin(n) * (1 - d) for d in (1e-6, 1e-9, 1e-12, 1e-14)] + [math.asin(n)]
+    thetas += [math.nextafter(thetas[-1], s) for s in (0.0, 2.0)]
+    write("oracle_critical", [row(repr(t), repr(n), digits(1 - formulas.fresnel(cos(mpf(t)), mpf(n)))) for t in thetas])
+
+
 if __name__ == "__main__":
     for table in sys.argv[1:]:
-        {"separations": separations, "fresnel": fresnel, "points": points}[table]()
+        {"separations": separations, "fresnel": fresnel, "points": points, "integrals": integral_tables, "hard": hard}[table]()
