@@ -1,5 +1,5 @@
 """The hemispherical integrals of formulas.py, each in coordinates of its own choice."""
-from mpmath import acos, cos, exp, mpf, pi, sin, sqrt, tan
+from mpmath import cos, exp, mpf, pi, sin, sqrt, tan
 
 from formulas import (fresnel, h_approximate, hg_azimuth_integral, smith_lambda, water_body_with)
 from quadrature import beyond, over
@@ -59,11 +59,6 @@ def glint_rho_dh(p, theta, level, shadows=False, reflect=fresnel):
         return over(lambda s, *_: element(s, c), mpf(0), min(last, 12 * sigma), level)
 
     return 2 * (over(ray, mpf(0), pi / 2, level) + over(ray, pi / 2, pi, level))
-
-
-def glint_albedo(p, level):
-    """mu = x^2, so that the powers of mu at the horizon are tame; below 1e-10 it has no weight."""
-    return over(lambda x, *_: 4 * x**3 * glint_rho_dh(p, acos(x * x), level), mpf("1e-5"), mpf(1), level - 1)
 
 
 def hapke_rho_dh(a, w, mu_i, level=5):
