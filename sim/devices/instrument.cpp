@@ -98,7 +98,13 @@ void Instrument::start_collection(Duration duration, Instant now) {
 }
 
 std::optional<Instant> Instrument::collection_end() const {
-  return collecting_ ? std::optional<Instant>(collecting_->close) : std::nullopt;
+  if (collecting_) return collecting_->close;
+  return collected_ ? std::optional<Instant>(collected_->close) : std::nullopt;
+}
+
+void Instrument::drop_collection() {
+  collecting_.reset();
+  collected_.reset();
 }
 
 std::optional<LightCollection> Instrument::take_collection(Instant now) {

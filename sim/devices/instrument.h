@@ -73,7 +73,8 @@ class Instrument {
   /// Begins to collect the light of a radiometer for `duration` > 0 of wall time, beside any exposure; one that is
   /// under way is dropped.
   void start_collection(Duration duration, Instant now);
-  void drop_collection() { collecting_.reset(); }
+  void drop_collection();
+  /// When the collection ends that is under way, or ended that nobody has taken.
   [[nodiscard]] std::optional<Instant> collection_end() const;
   /// The last finished collection, once.
   [[nodiscard]] std::optional<LightCollection> take_collection(Instant now);

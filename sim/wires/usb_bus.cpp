@@ -337,6 +337,7 @@ UsbAnswer UsbBus::Impl::poll_in(const Urb& urb) {
 }
 
 void UsbBus::Impl::pump() {
+  radiometer.with([](UsbtmcFunction& f, Instant now) { f.advance_to(now); });
   for (auto urb = waiting.begin(); urb != waiting.end();) {
     UsbAnswer answer = poll_in(*urb);
     if (answer.outcome == UsbOutcome::NotReady) {
@@ -350,10 +351,8 @@ void UsbBus::Impl::pump() {
     urb = waiting.erase(urb);
     finish(std::move(done), is_too_much ? -EOVERFLOW : status_of(answer.outcome));
   }
-  const auto next = radiometer.with([](UsbtmcFunction& f, Instant now) {
-    f.advance_to(now);
-    return f.due();
-  });
+  // What ended since the first line is due in the past, and comes with the next round.
+  const auto next = radiometer.with([](const UsbtmcFunction& f, Instant) { return f.due(); });
   if (std::exchange(due, next) != next && next) something_due.notify_one();
 }
 

@@ -140,6 +140,19 @@ TEST_F(RadiometerDriverTest, WaitsOutTheSettlingOfARange) {
   EXPECT_NEAR((*taken)->mean_w, 1e-3, 0.05 * 1e-2 * 4.6e-5) << "exp(-20 ms / 2 ms) of 5 % of 10 mW is left";
 }
 
+// A bus asks what is due while time goes on: what ended between two looks must not be forgotten.
+TEST_F(RadiometerDriverTest, StaysDueUntilTheSampleHasBeenTaken) {
+  ASSERT_TRUE(driver.trigger());
+  const auto due = [&] { return meter.with([](const UsbtmcFunction& function, Instant) { return function.due(); }); };
+  const auto before = due();
+
+  clock.advance(10s);
+
+  EXPECT_EQ(due(), before);
+  meter.with([](UsbtmcFunction& function, Instant now) { function.advance_to(now); });
+  EXPECT_FALSE(due());
+}
+
 TEST_F(RadiometerDriverTest, HasTheStandardErrorThatItsSamplesHave) {
   RadiometerSpec noisy = monitor();
   for (RadiometerRange& range : noisy.ranges) range.noise = 1e-3;
