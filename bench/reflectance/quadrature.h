@@ -73,6 +73,6 @@ struct Prepared {
 [[nodiscard]] double integrand_in_mu(const Case& c, const reflectance::Direction& i, double mu, double phi);
 
 /// No general quadrature may take more evaluations than this in one run.
-inline constexpr std::uint64_t kMostEvaluations = 4'000'000;
+inline constexpr std::uint64_t kMostEvaluations = 2'000'000;
 
 }  // namespace gonio::bench

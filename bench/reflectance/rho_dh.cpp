@@ -10,7 +10,7 @@
 namespace gonio::bench {
 namespace {
 
-constexpr int kRounds = 7;
+constexpr int kRounds = 5;
 
 std::vector<Method> all_methods() {
   std::vector<Method> all;
@@ -23,7 +23,7 @@ std::vector<Method> all_methods() {
 // Once through every setting for its error; then all in turns for their times.
 Ladders measure(const Case& c, const std::vector<Method>& methods) {
   constexpr double kEnough = 1e-12;  // no finer grid is looked at
-  constexpr double kTooLong = 1.0;   // s
+  constexpr double kTooLong = 0.05;  // s
   Ladders ladders;
   std::vector<Timed> timed;
   std::vector<std::pair<std::string, std::size_t>> owners;

@@ -39,7 +39,7 @@ double median(std::vector<double> values) {
 }
 
 std::vector<double> interleaved_medians(const std::vector<Timed>& all, int rounds) {
-  constexpr double kFill = 1e-3;
+  constexpr double kFill = 3e-4;
   constexpr double kLong = 2e-2;  // such calls are their own average: three rounds do
   std::vector<std::vector<double>> seconds(all.size());
   std::vector<double> rough;

@@ -15,7 +15,7 @@ struct Timed {
 };
 
 /// The median [s] of each, once. All are timed in turns, round after round, so that whatever slows the machine
-/// for a while slows them alike; short ones are repeated to fill a millisecond.
+/// for a while slows them alike; short ones are repeated to fill a third of a millisecond.
 [[nodiscard]] std::vector<double> interleaved_medians(const std::vector<Timed>& all, int rounds);
 
 /// Median of values; they may be in any order. At least one (asserted).
