@@ -31,7 +31,7 @@ constexpr std::uint8_t bit(bool on, unsigned place) {
   return static_cast<std::uint8_t>(on ? 1U << place : 0U);
 }
 constexpr bool has_bit(std::uint8_t byte, unsigned place) {
-  return (byte >> place & 1U) != 0;
+  return (static_cast<unsigned>(byte) >> place & 1U) != 0;
 }
 
 }  // namespace
