@@ -11,6 +11,7 @@ namespace {
 
 Integral smooth_part(const Surface& surface, const Direction& i, double tolerance) {
   if (const std::optional<double> closed = surface.closed_rho_dh(i)) return Integral::closed(*closed);
+  if (const std::optional<Integral> own = surface.own_rho_dh(i, tolerance)) return *own;
   switch (surface.feature()) {
     case Feature::HotSpot:
       return polar_integral(surface, i, i, tolerance);

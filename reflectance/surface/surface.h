@@ -16,6 +16,7 @@
 #include "base/units.h"
 #include "reflectance/batch/direction_block.h"
 #include "reflectance/direction/direction.h"
+#include "reflectance/integral/integral.h"
 #include "reflectance/sampling/direction_sample.h"
 
 namespace gonio::reflectance {
@@ -56,13 +57,15 @@ struct FastPath {
 ///   is_isotropic()   whether only the size of phi_r - phi_i counts: neither a turn nor a mirror image changes it
 /// and where it applies
 ///   rho_dh(i)        the smooth part's directional-hemispherical reflectance, where it has a closed form
+///   rho_dh(i, relative_tolerance)
+///                    the same by a quadrature of the model's own, where it knows better than any general one
 ///   specular(i)      the share of the light from i that leaves in mirrored(i) exactly, a delta in the BRDF (eq 9)
 ///   albedo()         the Bond albedo, mirror part included, where it has a closed form
 ///   sample(i, draw)  a direction drawn by an inverse in closed form
 ///   feature()        else Smooth
 ///   eval_fast(i, r, f), fast_path()
-///                    f[k] for each lane of a DirectionBlock by vector code (batch/), and how far it may be from `eval`;
-///                    the bits of a lane depend on nothing but i and that lane
+///                    f[k] for each lane of a DirectionBlock by vector code (batch/), and how far it may be from
+///                    `eval`; the bits of a lane depend on nothing but i and that lane
 /// All are pure: threads any.
 template <class M>
 concept SurfaceModel = std::copyable<M> && requires(const M m, const Direction& d) {
@@ -96,6 +99,10 @@ class Surface {
 
   /// Directional-hemispherical reflectance of the smooth part, where a formula gives it.
   [[nodiscard]] std::optional<double> closed_rho_dh(const Direction& i) const { return model_->closed_rho_dh(i); }
+  /// The same by the model's own quadrature, where it has one.
+  [[nodiscard]] std::optional<Integral> own_rho_dh(const Direction& i, double relative_tolerance) const {
+    return model_->own_rho_dh(i, relative_tolerance);
+  }
   /// The share of the light from i that leaves exactly in the direction mirrored(i); 0 without a mirror part.
   [[nodiscard]] double specular(const Direction& i) const { return model_->specular(i); }
 
@@ -128,6 +135,7 @@ class Surface {
     virtual void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f) const = 0;
     virtual FastPath fast_path() const = 0;
     virtual std::optional<double> closed_rho_dh(const Direction& i) const = 0;
+    virtual std::optional<Integral> own_rho_dh(const Direction& i, double relative_tolerance) const = 0;
     virtual double specular(const Direction& i) const = 0;
     virtual std::optional<double> closed_albedo() const = 0;
     virtual std::optional<DirectionSample> closed_sample(const Direction& i, UnitPoint draw) const = 0;
@@ -183,6 +191,13 @@ struct Surface::Holder final : Surface::Interface {
   std::optional<double> closed_rho_dh(const Direction& i) const override {
     if constexpr (requires { model_value.rho_dh(i); })
       return model_value.rho_dh(i);
+    else
+      return std::nullopt;
+  }
+
+  std::optional<Integral> own_rho_dh(const Direction& i, double relative_tolerance) const override {
+    if constexpr (requires { model_value.rho_dh(i, relative_tolerance); })
+      return model_value.rho_dh(i, relative_tolerance);
     else
       return std::nullopt;
   }

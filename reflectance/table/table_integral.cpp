@@ -1,10 +1,11 @@
-#include "reflectance/table/table_integral.h"
-
+// rho_dh of a table: by Gauss nodes within the cells of its readings, so that no kink lies inside of a panel.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "reflectance/integral/directional_reflectance.h"
+#include "reflectance/integral/hemisphere_integral.h"
 #include "reflectance/integral/refinement.h"
+#include "reflectance/table/tabulated_surface.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -34,20 +35,42 @@ constexpr std::array kOrders{2, 3, 5, 8};
   });
 }
 
+// Rings take kinks as they come, and err by the square of their spacing: two levels may agree by chance, so that the
+// step before, shrunk by as much, counts as well, and both thrice.
+Integral over_rings(const TabulatedSurface& table, const Direction& i, double relative_tolerance) {
+  constexpr int kFirstRings = 16;
+  constexpr int kMostRings = 256;
+  Integral result;
+  double last_step = 0.0;
+  for (int rings = kFirstRings; rings <= kMostRings; rings *= 2) {
+    RuleSum sum;
+    for (const HemisphereNode& node : gauss_rings(rings, 2 * rings, RingSpacing::SqrtMu)) {
+      sum.add(node.weight_sr * in_per_steradian(table.eval(i, node.direction)));
+    }
+    const double step = std::abs(sum.value() - result.value);
+    result.value = sum.value();
+    result.error = 3.0 * std::max(step, 0.25 * last_step) + kRuleRounding * sum.size();
+    result.evaluations += sum.evaluations();
+    if (rings > 2 * kFirstRings && result.error <= relative_tolerance * sum.size()) break;
+    last_step = step;
+  }
+  return result;
+}
+
 }  // namespace
 
-Integral rho_dh(const TabulatedSurface& table, const Direction& i, double relative_tolerance) {
-  if (table.options().reciprocal) return rho_dh(Surface(table), i, relative_tolerance);
-  const IncidenceBracket bracket = table.bracket(i);
+Integral TabulatedSurface::rho_dh(const Direction& i, double relative_tolerance) const {
+  if (options_.reciprocal) return over_rings(*this, i, relative_tolerance);
+  const IncidenceBracket shares = bracket(i);
   bool has_cells = true;
   const Integral found = refined(0, static_cast<int>(kOrders.size()) - 1, relative_tolerance, [&](int level) {
     RuleSum sum;
-    for (const IncidenceBracket::Share& share : bracket.shares()) {
-      has_cells = has_cells && add_row(table, share, i, kOrders[static_cast<std::size_t>(level)], sum);
+    for (const IncidenceBracket::Share& share : shares.shares()) {
+      has_cells = has_cells && add_row(*this, share, i, kOrders[static_cast<std::size_t>(level)], sum);
     }
     return sum;
   });
-  return has_cells ? found : rho_dh(Surface(table), i, relative_tolerance);
+  return has_cells ? found : over_rings(*this, i, relative_tolerance);
 }
 
 }  // namespace gonio::reflectance

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "../surfaces.h"
-#include "tables.h"
+#include "tests/reflectance/surfaces.h"
+#include "tests/reflectance/table/tables.h"
 
 namespace gonio::reflectance {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "reflectance/integral/directional_reflectance.h"
 #include "reflectance/table/cross_validation.h"
-#include "reflectance/table/table_integral.h"
 #include "reflectance/table/tabulated_surface.h"
 
 namespace gonio::reflectance {

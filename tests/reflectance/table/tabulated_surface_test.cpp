@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "../generated.h"
-#include "../surfaces.h"
 #include "reflectance/table/detect_feature.h"
-#include "tables.h"
+#include "tests/reflectance/generated.h"
+#include "tests/reflectance/surfaces.h"
+#include "tests/reflectance/table/tables.h"
 
 namespace gonio::reflectance {
 namespace {
