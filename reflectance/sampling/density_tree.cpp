@@ -181,7 +181,7 @@ class DensityTree::Builder {
     integral_ += draft.integral;
     // Cells that are off by nothing are still halved until there are enough of them: by size.
     double priority = draft.off + 1e-12 * draft.cell.dv * draft.cell.dw;
-    const bool counts = draft.integral > 1e-3 * goal_.accuracy * integral_;
+    const bool counts = draft.integral > std::min(1e-3 * goal_.accuracy, 1e-6) * integral_;
     if ((draft.ratio > kSteep && counts) || is_peak_unmet(draft.cell)) priority += kUrgent;
     if (std::min(draft.cell.dv, draft.cell.dw) > kLeastWidth) queue_.emplace(priority, index);
   }
@@ -221,7 +221,8 @@ class DensityTree::Builder {
     for (std::size_t k = 0; k < places.size(); ++k)
       is_steep = is_steep || values[k] > kSteep * cell.at(place(cell, places[k].place));
     if (!is_steep) return;
-    const double most = *std::ranges::max_element(values);
+    constexpr double kMargin = 2.0;  // for what lies between the points
+    const double most = kMargin * *std::ranges::max_element(values);
     for (double& corner : cell.corner) corner = std::max(corner, most);
   }
 

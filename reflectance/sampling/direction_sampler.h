@@ -26,7 +26,7 @@ struct SamplerReport {
   double rho_dh = 0.0;        ///< of the surface for this incidence, mirror part included
   double rho_dh_error = 0.0;  ///< by which `rho_dh` may be off
   /// No weight is larger in size. Exact for a closed form and for facets; of a table the largest met at 24 points of
-  /// each cell, its distance from the mean widened by half: tried, not proven.
+  /// each cell, its distance from the mean doubled: tried, not proven.
   double most_weight = 0.0;
   /// Half the integral of |density drawn from - density wanted|: no set of directions is drawn with a probability
   /// farther off. 0 in all methods but FastTable, which are exact in the mean.

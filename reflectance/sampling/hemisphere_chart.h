@@ -22,7 +22,7 @@ struct ChartRing {
   double mu;
   double sin_theta;
 };
-[[nodiscard]] inline ChartRing chart_ring(double v) {
+[[nodiscard, gnu::always_inline]] inline ChartRing chart_ring(double v) {
   const double v2 = v * v;
   const double t = (1.0 - v) * (1.0 + v);
   const double scale = 1.0 / (1.0 + t * t);
@@ -51,12 +51,12 @@ struct ChartRing {
 }
 
 /// Cosine and sine of an angle in turns, 0 <= turns <= 1, to 2e-16: Taylor's series about the nearest quarter. Plain
-/// arithmetic without branches, so that a loop of it is vectorised, and its bits do not depend on whether it was.
+/// arithmetic without branches: in a loop it becomes vector code, of the same bits.
 struct TurnVector {
   double cosine;
   double sine;
 };
-[[nodiscard]] inline TurnVector turn_vector(double turns) {
+[[nodiscard, gnu::always_inline]] inline TurnVector turn_vector(double turns) {
   const int quarter = static_cast<int>(4.0 * turns + 0.5);
   const double x = (turns - 0.25 * quarter) * (2.0 * std::numbers::pi);
   const double x2 = x * x;

@@ -9,9 +9,9 @@
 
 namespace gonio::reflectance {
 
-/// What draws directions as light from `i` leaves `surface`: its model's own inverse where it has one, the facets of a
-/// glint that is to be unbiased, the terms of a sum each in its own way, else a table (TableSampler), to which
-/// `options` apply. Errors: InvalidInput, as TableSampler::make.
+/// What draws directions as light from `i` leaves `surface`: its model's own inverse where it has one, the
+/// terms of a sum each in its own way, else a table (TableSampler), to which `options` apply. Errors: InvalidInput, as
+/// TableSampler::make.
 [[nodiscard]] Result<std::unique_ptr<const DirectionSampler>> make_sampler(const Surface& surface, const Direction& i,
                                                                            const SamplerOptions& options = {});
 

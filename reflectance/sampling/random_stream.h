@@ -12,7 +12,8 @@ using RandomBlock = std::array<std::uint32_t, 4>;
 
 /// Philox 4x32-10 of Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3" (SC11, 2011): a
 /// bijection of the counter, ten rounds deep, chosen by the key.
-[[nodiscard]] constexpr RandomBlock philox4x32(RandomBlock counter, std::array<std::uint32_t, 2> key) {
+[[nodiscard, gnu::always_inline]] constexpr RandomBlock philox4x32(RandomBlock counter,
+                                                                   std::array<std::uint32_t, 2> key) {
   constexpr std::uint64_t kMultiplier0 = 0xD2511F53;
   constexpr std::uint64_t kMultiplier1 = 0xCD9E8D57;
   constexpr std::uint32_t kWeyl0 = 0x9E3779B9;  // golden ratio
@@ -45,7 +46,7 @@ class RandomStream {
   explicit constexpr RandomStream(std::uint64_t seed) : RandomStream(seed, 0) {}
 
   /// 128 bits of their own for each of 2^64 indices.
-  [[nodiscard]] constexpr RandomBlock block(std::uint64_t index) const {
+  [[nodiscard, gnu::always_inline]] constexpr RandomBlock block(std::uint64_t index) const {
     return philox4x32({low(index), high(index), depth_, 0}, {low(seed_), high(seed_)});
   }
   /// The same bits as two numbers, neither 0 nor 1.

@@ -86,16 +86,6 @@ std::vector<double> entry_masses(const DensityTree& tree, double specular) {
 
 }  // namespace
 
-// The draws of one run on their way from bits to directions.
-struct TableSampler::Run {
-  std::size_t size = 0;
-  std::array<std::uint32_t, kRun> entry;
-  std::array<double, kRun> v;
-  std::array<double, kRun> w;
-  std::array<double, kRun> mu;
-  std::array<double, kRun> sin_theta;
-};
-
 TableSampler::TableSampler(const Surface& surface, const Direction& i, DensityTree tree)
     : DirectionSampler(i),
       surface_(surface),
@@ -108,16 +98,21 @@ Result<std::unique_ptr<const TableSampler>> TableSampler::make(const Surface& su
                                                                const SamplerOptions& options) {
   GONIO_TRY(check_ranges(options));
   ChartDensity density(surface, i, options.negative_values);
-  const DensityTree::Goal goal{
-      .accuracy = options.accuracy, .most_cells = options.most_cells, .has_peak = surface.feature() != Feature::Smooth};
-  DensityTree tree(std::ref(density), chart_point(i, i.phi()).v, goal);
-  GONIO_TRY(density.verdict());
-
-  std::unique_ptr<TableSampler> sampler(new TableSampler(surface, i, std::move(tree)));
   const Integral rho = rho_dh(surface, i, std::min(1e-3, 0.1 * options.accuracy));
-  sampler->make_report(options, rho);
-  GONIO_TRY(sampler->check(options, rho));
-  return sampler;
+  DensityTree::Goal goal{
+      .accuracy = options.accuracy, .most_cells = options.most_cells, .has_peak = surface.feature() != Feature::Smooth};
+  // The audit's points see more than those that steer: where they find too much, the goal is set higher.
+  constexpr int kMostTrials = 4;
+  for (int trial = 1;; ++trial) {
+    DensityTree tree(std::ref(density), chart_point(i, i.phi()).v, goal);
+    GONIO_TRY(density.verdict());
+    std::unique_ptr<TableSampler> sampler(new TableSampler(surface, i, std::move(tree)));
+    sampler->make_report(options, rho);
+    const Result<void> verdict = sampler->check(options, rho);
+    if (verdict) return sampler;
+    if (trial == kMostTrials || sampler->report_.cells >= options.most_cells) return failure(verdict.error());
+    goal.accuracy *= 0.25;
+  }
 }
 
 void TableSampler::make_report(const SamplerOptions& options, const Integral& rho) {
@@ -134,7 +129,7 @@ void TableSampler::make_report(const SamplerOptions& options, const Integral& rh
     // |a/A - b/B| <= |a - b|/A + b |1/A - 1/B|, summed over the hemisphere.
     report_.total_variation = 0.5 * (audit.absolute + std::abs(tree_.mass() - audit.integral)) / total_;
   } else {
-    constexpr double kWidened = 1.5;
+    constexpr double kWidened = 2.0;
     report_.most_weight = total_ * (1.0 + kWidened * std::max(0.0, audit.most_ratio - 1.0));
   }
 }
@@ -161,63 +156,66 @@ double TableSampler::density_per_sr(const Direction& r) const {
 
 void TableSampler::draw_run(const RandomStream& stream, std::span<const std::uint64_t> indices,
                             const SampleBatch& out) const {
-  Run run;
-  run.size = indices.size();
-  choose_places(stream, indices, run);
   // The azimuth of the chart is turned so that 1/2 points towards i.
   const double cosine = -std::cos(incidence().phi().si());
   const double sine = -std::sin(incidence().phi().si());
-  for (std::size_t n = 0; n < run.size; ++n) {
-    const ChartRing ring = chart_ring(run.v[n]);
-    const TurnVector turn = turn_vector(run.w[n]);
-    run.mu[n] = ring.mu;
-    run.sin_theta[n] = ring.sin_theta;
-    out.x[n] = ring.sin_theta * (turn.cosine * cosine - turn.sine * sine);
-    out.y[n] = ring.sin_theta * (turn.cosine * sine + turn.sine * cosine);
-    out.z[n] = ring.mu;
-    out.weight[n] = report_.rho_dh;
-    out.is_specular[n] = 0;
-  }
-  if (report_.method == SamplingMethod::Table && total_ > 0.0) weigh(run, out);
-  if (specular_ > 0.0) put_mirrored(run, out);
-}
-
-void TableSampler::choose_places(const RandomStream& stream, std::span<const std::uint64_t> indices, Run& run) const {
-  const std::span<const DensityCell> cells = tree_.cells();
-  for (std::size_t n = 0; n < indices.size(); ++n) {
-    const RandomBlock bits = stream.block(indices[n]);
-    const std::uint32_t entry = alias_.choose(bits[0], bits[1]);
-    const DensityCell& cell = cells[std::min<std::size_t>(entry / 4, cells.size() - 1)];
-    // Towards the corner that was chosen the density rises linearly: 1 - sqrt(u) from it.
-    const double a = std::sqrt(open_unit(bits[2]));
-    const double b = std::sqrt(open_unit(bits[3]));
-    run.entry[n] = entry;
-    run.v[n] = cell.v + cell.dv * ((entry & 1U) != 0 ? a : 1.0 - a);
-    run.w[n] = cell.w + cell.dw * ((entry & 2U) != 0 ? b : 1.0 - b);
+  const bool is_weighted = report_.method == SamplingMethod::Table && total_ > 0.0;
+  DrawBlock block;
+  block.index.fill(0);
+  for (std::size_t first = 0; first < indices.size(); first += DrawBlock::kSize) {
+    const std::size_t count = std::min(DrawBlock::kSize, indices.size() - first);
+    std::ranges::copy(indices.subspan(first, count), block.index.begin());
+    fill_bits(stream, block);
+    choose_places(block);
+    fill_directions(cosine, sine, block);
+    const SampleBatch part = out.part(first, count);
+    std::copy_n(block.x.begin(), count, part.x.begin());
+    std::copy_n(block.y.begin(), count, part.y.begin());
+    std::copy_n(block.mu.begin(), count, part.z.begin());
+    std::ranges::fill(part.weight, report_.rho_dh);
+    std::ranges::fill(part.is_specular, std::uint8_t{0});
+    if (is_weighted) weigh(block, part);
+    if (specular_ > 0.0) put_mirrored(block, part);
   }
 }
 
-void TableSampler::weigh(const Run& run, const SampleBatch& out) const {
-  std::array<Direction, kRun> directions;
-  std::array<Brdf, kRun> brdf;
-  for (std::size_t n = 0; n < run.size; ++n) {
-    const Angle phi = incidence().phi() + radians(2.0 * std::numbers::pi * (run.w[n] - 0.5));
-    directions[n] = Direction::from_cosine(run.mu[n], run.sin_theta[n], phi);
-  }
-  surface_.eval(incidence(), std::span(directions).first(run.size), std::span(brdf).first(run.size));
-  const std::span<const DensityCell> cells = tree_.cells();
-  for (std::size_t n = 0; n < run.size; ++n) {
-    const DensityCell& cell = cells[std::min<std::size_t>(run.entry[n] / 4, cells.size() - 1)];
-    const double wanted = in_per_steradian(brdf[n]) * run.mu[n] * chart_steradians(run.v[n]);
-    out.weight[n] = total_ * wanted / cell.at({.v = run.v[n], .w = run.w[n]});
+// The mirror part, the last entry, gets a place as well: it is overwritten.
+const DensityCell& TableSampler::cell_of(std::uint32_t entry) const {
+  return tree_.cells()[std::min<std::size_t>(entry / 4, tree_.cells().size() - 1)];
+}
+
+void TableSampler::choose_places(DrawBlock& block) const {
+  for (std::size_t n = 0; n < DrawBlock::kSize; ++n) {
+    const std::uint32_t entry = alias_.choose(block.bits[0][n], block.bits[1][n]);
+    const DensityCell& cell = cell_of(entry);
+    // From the corner that was chosen the density falls linearly: 1 - sqrt(u) from it.
+    const double a = std::sqrt(open_unit(block.bits[2][n]));
+    const double b = std::sqrt(open_unit(block.bits[3][n]));
+    block.entry[n] = entry;
+    block.v[n] = cell.v + cell.dv * ((entry & 1U) != 0 ? a : 1.0 - a);
+    block.w[n] = cell.w + cell.dw * ((entry & 2U) != 0 ? b : 1.0 - b);
   }
 }
 
-void TableSampler::put_mirrored(const Run& run, const SampleBatch& out) const {
+void TableSampler::weigh(const DrawBlock& block, const SampleBatch& out) const {
+  std::array<Direction, DrawBlock::kSize> directions;
+  std::array<Brdf, DrawBlock::kSize> brdf;
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const Angle phi = incidence().phi() + radians(2.0 * std::numbers::pi * (block.w[n] - 0.5));
+    directions[n] = Direction::from_cosine(block.mu[n], block.sin_theta[n], phi);
+  }
+  surface_.eval(incidence(), std::span(directions).first(out.size()), std::span(brdf).first(out.size()));
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const double wanted = in_per_steradian(brdf[n]) * block.mu[n] * chart_steradians(block.v[n]);
+    out.weight[n] = total_ * wanted / cell_of(block.entry[n]).at({.v = block.v[n], .w = block.w[n]});
+  }
+}
+
+void TableSampler::put_mirrored(const DrawBlock& block, const SampleBatch& out) const {
   const std::size_t entry = 4 * tree_.cells().size();
   const Vector r = mirrored(incidence()).vector();
-  for (std::size_t n = 0; n < run.size; ++n) {
-    if (run.entry[n] != entry) continue;
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    if (block.entry[n] != entry) continue;
     out.x[n] = r.x;
     out.y[n] = r.y;
     out.z[n] = r.z;

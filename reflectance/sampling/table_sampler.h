@@ -6,6 +6,7 @@
 #include "reflectance/sampling/alias_table.h"
 #include "reflectance/sampling/density_tree.h"
 #include "reflectance/sampling/direction_sampler.h"
+#include "reflectance/sampling/draw_kernels.h"
 #include "reflectance/sampling/sampler_options.h"
 #include "reflectance/surface/surface.h"
 
@@ -27,7 +28,6 @@ class TableSampler final : public DirectionSampler {
   [[nodiscard]] double density_per_sr(const Direction& r) const;
 
  private:
-  struct Run;
   TableSampler(const Surface& surface, const Direction& i, DensityTree tree);
   void make_alias();
   void make_report(const SamplerOptions& options, const struct Integral& rho);
@@ -35,9 +35,10 @@ class TableSampler final : public DirectionSampler {
 
   void draw_run(const RandomStream& stream, std::span<const std::uint64_t> indices,
                 const SampleBatch& out) const override;
-  void choose_places(const RandomStream& stream, std::span<const std::uint64_t> indices, Run& run) const;
-  void weigh(const Run& run, const SampleBatch& out) const;
-  void put_mirrored(const Run& run, const SampleBatch& out) const;
+  [[nodiscard]] const DensityCell& cell_of(std::uint32_t entry) const;
+  void choose_places(DrawBlock& block) const;
+  void weigh(const DrawBlock& block, const SampleBatch& out) const;
+  void put_mirrored(const DrawBlock& block, const SampleBatch& out) const;
 
   Surface surface_;
   DensityTree tree_;

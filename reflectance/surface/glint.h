@@ -58,6 +58,10 @@ class Glint {
   void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;
   [[nodiscard]] FastPath fast_path() const;
 
+  [[nodiscard]] const GlintParameters& values() const { return p_; }
+  /// Smith's Lambda: facets hidden from d by others, per facet seen; 0 at the normal.
+  [[nodiscard]] double hidden_ratio(const Direction& d) const;
+
   [[nodiscard]] std::string_view model() const { return spec(p_.shadowing).name; }
   [[nodiscard]] Parameters parameters() const {
     return {{"slope_variance", p_.slope_variance}, {"refractive_index", p_.refractive_index}};
@@ -73,7 +77,6 @@ class Glint {
     if (p_.shadowing == Shadowing::None) return 1.0;
     return 1.0 / (1.0 + (hidden_ratio(i) + hidden_ratio(r)));
   }
-  [[nodiscard]] double hidden_ratio(const Direction& d) const;  ///< Smith's Lambda
 
   void fill_visible_shares(double* shares, const Direction& i, const DirectionBlock& r, VectorUnit unit) const;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "reflectance/integral/directional_reflectance.h"
+#include "reflectance/sampling/any_incidence_sampler.h"
+#include "reflectance/sampling/facet_sampler.h"
 #include "reflectance/sampling/make_sampler.h"
 #include "reflectance/sampling/table_sampler.h"
 #include "reflectance/surface/make_surface.h"
@@ -30,9 +32,10 @@ double draw(const DirectionSampler& sampler, std::uint64_t draws, HemisphereBins
   return most;
 }
 
-void expect_follows(const DirectionSampler& sampler, const Surface& surface, const Direction& i) {
+void expect_follows(const DirectionSampler& sampler, const Surface& surface, const Direction& i,
+                    std::uint64_t draws = kDraws) {
   HemisphereBins bins(surface, i);
-  const double most = draw(sampler, kDraws, bins);
+  const double most = draw(sampler, draws, bins);
 
   const ChiSquare chi = bins.chi_square();
   SCOPED_TRACE(::testing::Message() << "chi-square " << chi.value << " with " << chi.freedom << " degrees of freedom, "
@@ -63,6 +66,38 @@ TEST_P(SamplingStatistics, TenMillionFastDirectionsFollowTheBrdfAsWell) {
     SCOPED_TRACE(::testing::Message() << "theta_i " << theta << " deg, seed " << kSeed);
     const SamplerOptions fast{.use = TableUse::Fast, .accuracy = 3e-4};
     expect_follows(*make_sampler(GetParam().surface, i, fast).value(), GetParam().surface, i);
+  }
+}
+
+TEST(SamplingStatistics, OfFacetsFollowTheGlint) {
+  for (const char* model : {"glint", "glint_smith"}) {
+    const Surface rough = surface(model, {{"slope_variance", 0.05}, {"refractive_index", 1.34}});
+    for (const double theta : kThetas) {
+      const Direction i = Direction::from_angles(degrees(theta), degrees(40.0));
+      SCOPED_TRACE(::testing::Message() << model << ", theta_i " << theta << " deg, seed " << kSeed);
+      expect_follows(FacetSampler(*rough.as<Glint>(), i), rough, i, 2'000'000);
+    }
+  }
+}
+
+TEST(SamplingStatistics, OfRowsFollowTheBrdfBetweenThem) {
+  const Surface glossy = sum_of({{wheat(), 0.6}, {surface("fresnel_mirror", {{"refractive_index", 1.5}}), 1.0}});
+  for (const Surface& tested : {glossy, surface("hapke_exact_hg", {{"omega0", 0.9}, {"g", -0.3}})}) {
+    const AnyIncidenceSampler sampler = AnyIncidenceSampler::make(tested).value();
+    for (const double theta : {0.0, 33.3, 61.7, 85.0}) {
+      SCOPED_TRACE(::testing::Message() << tested.model() << ", theta_i " << theta << " deg, seed " << kSeed << ", "
+                                        << sampler.rows() << " rows");
+      const Direction i = Direction::from_angles(degrees(theta), degrees(40.0));
+      HemisphereBins bins(tested, i);
+      for (std::uint64_t k = 0; k < 1'000'000; ++k) {
+        const DirectionSample sample = sampler.sample(i, RandomStream(kSeed), k);
+        const Vector r = sample.r.vector();
+        bins.add(r.x, r.y, r.z, sample.weight, sample.is_specular);
+      }
+      EXPECT_GT(bins.chi_square().p, 1e-4);
+      EXPECT_LT(bins.chi_square().p, 1.0 - 1e-4);
+      EXPECT_NEAR(bins.mean_weight(), rho_dh(tested, i).value, 4.0 * bins.mean_deviation());
+    }
   }
 }
 
