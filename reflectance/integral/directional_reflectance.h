@@ -7,9 +7,11 @@ namespace gonio::reflectance {
 
 /// rho_dh(i), the directional-hemispherical reflectance: the share of the light from i that the surface sends back,
 /// mirror part included (Nicodemus 1977; Mobley 2005, section 4). Closed where the surface has a formula; else by
-/// quadrature, chosen by its feature: Gauss rings, or polar coordinates about retro-reflection for a hot spot, about
-/// the mirror direction for a lobe; a sum term by term. Never clipped: a value above 1 is the model's own and means
-/// that it breaks energy there. Asks for `relative_tolerance` >= 1e-14; see Integral for what comes back.
+/// quadrature: the model's own, or one chosen by its feature, in polar coordinates about retro-reflection for a hot
+/// spot, about the mirror direction for a lobe, about the normal else; a sum term by term. Never clipped: a value above
+/// 1 is the model's own and means that it breaks energy there. Asks for `relative_tolerance` >= 1e-14; see Integral for
+/// what comes back. The models hold mu at 1e-12 or more (clamped_cosine.h); where f mu is finite at the horizon that is
+/// up to 1e-12 of the value, which `error` does not know.
 [[nodiscard]] Integral rho_dh(const Surface& surface, const Direction& i, double relative_tolerance = 1e-9);
 /// At phi_i = 0. theta_i in [0, 90 deg] (asserted).
 [[nodiscard]] Integral rho_dh(const Surface& surface, Angle theta_i, double relative_tolerance = 1e-9);

@@ -12,8 +12,8 @@ struct Integral {
   double error = 0.0;
   std::uint64_t evaluations = 0;  ///< of the integrand; 0 for a closed form
 
-  /// What a formula gave, with the rounding that it may have: 2e-15 relative.
-  [[nodiscard]] static Integral closed(double value) { return {.value = value, .error = 2e-15 * std::abs(value)}; }
+  /// What a formula gave, with the rounding that it may have: 4e-15 relative.
+  [[nodiscard]] static Integral closed(double value) { return {.value = value, .error = 4e-15 * std::abs(value)}; }
 
   void add(const Integral& part, double weight) {
     value += weight * part.value;

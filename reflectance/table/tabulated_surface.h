@@ -51,7 +51,7 @@ class TabulatedSurface {
   [[nodiscard]] Measured<Brdf> measured(const Direction& i, const Direction& r) const;
   /// Whether readings surround the pair closely enough by the options: else the value is a continuation.
   [[nodiscard]] bool covers(const Direction& i, const Direction& r) const;
-  /// What part of the projected hemisphere of views is not covered under i, 0 to 1, to about 0.002: the part of the
+  /// What part of the projected hemisphere of views is not covered under i, 0 to 1, to about 0.004: the part of the
   /// weight in rho_dh(i) that was not measured.
   [[nodiscard]] double extrapolated_share(const Direction& i) const;
 
