@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLowest = 0.02;  // v of the lowest row: 0.02 deg of elevation
 
-Error refusal(std::string_view field, std::string seen, std::string limit) {
+Error rows_refusal(std::string_view field, std::string seen, std::string limit) {
   return {.code = ErrorCode::InvalidInput,
           .tried = "tabulate a surface for light from anywhere",
           .seen = std::move(seen),
@@ -32,7 +32,7 @@ struct SmoothPart {
   [[nodiscard]] Feature feature() const { return surface.feature(); }
 };
 
-Direction turned(const Direction& d, Angle phi) {
+Direction turned_by(const Direction& d, Angle phi) {
   return Direction::from_cosine(d.mu(), d.sin_theta(), d.phi() + phi);
 }
 
@@ -45,12 +45,12 @@ struct AnyIncidenceSampler::Row {
 
 Result<AnyIncidenceSampler> AnyIncidenceSampler::make(const Surface& surface, const RowOptions& options) {
   if (options.most_rows < 9 || options.most_rows > 4097)
-    return failure(refusal("most_rows", fmt::format("{} rows", options.most_rows), "9 to 4097"));
+    return failure(rows_refusal("most_rows", fmt::format("{} rows", options.most_rows), "9 to 4097"));
   if (!(options.most_ratio > 1.0))
-    return failure(refusal("most_ratio", fmt::format("ratio {}", options.most_ratio), "above 1"));
+    return failure(rows_refusal("most_ratio", fmt::format("ratio {}", options.most_ratio), "above 1"));
   if (!surface.is_isotropic())
-    return failure(refusal("surface", fmt::format("{} is anisotropic", surface.model()),
-                           "isotropic, since rows are of theta_i alone; else make_sampler for each incidence"));
+    return failure(rows_refusal("surface", fmt::format("{} is anisotropic", surface.model()),
+                                "isotropic, since rows are of theta_i alone; else make_sampler for each incidence"));
   AnyIncidenceSampler sampler(surface, options);
   constexpr int kFirstRows = 9;
   for (int k = 0; k < kFirstRows; ++k) GONIO_TRY(sampler.add_row(kLowest + (1.0 - kLowest) * k / (kFirstRows - 1)));
@@ -77,11 +77,11 @@ Result<void> AnyIncidenceSampler::close_gaps() {
       continue;
     }
     if (rows_.size() >= options_.most_rows) {
-      return failure(
-          refusal("most_rows",
-                  fmt::format("with {} rows weights reach {:.3g} times their mean at theta_i {:.2f} deg", rows_.size(),
-                              ratio, in_degrees(chart_direction({.v = middle, .w = 0.5}, {}).theta())),
-                  fmt::format("{} times", options_.most_ratio)));
+      return failure(rows_refusal(
+          "most_rows",
+          fmt::format("with {} rows weights reach {:.3g} times their mean at theta_i {:.2f} deg", rows_.size(), ratio,
+                      in_degrees(chart_direction({.v = middle, .w = 0.5}, {}).theta())),
+          fmt::format("{} times", options_.most_ratio)));
     }
     GONIO_TRY(add_row(middle));
   }
@@ -124,7 +124,7 @@ DirectionSample AnyIncidenceSampler::sample(const Direction& i, const RandomStre
   const TableSampler& chosen = choice.v < at.part ? high : low;
   const Direction in_row = chosen.sample(stream.deeper(), index).r;
   const double density = (1.0 - at.part) * low.density_per_sr(in_row) + at.part * high.density_per_sr(in_row);
-  const Direction r = turned(in_row, i.phi());
+  const Direction r = turned_by(in_row, i.phi());
   const double wanted = in_per_steradian(surface_.eval(i, r)) * r.mu();
   return {.r = r, .weight = density > 0.0 ? wanted / density * (all / smooth) : 0.0};
 }

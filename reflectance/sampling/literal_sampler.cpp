@@ -11,7 +11,7 @@
 namespace gonio::reflectance {
 namespace {
 
-Result<void> check_count(std::string_view name, int count) {
+Result<void> check_cells(std::string_view name, int count) {
   if (count >= 1 && count <= 4096) return {};
   return failure({.code = ErrorCode::InvalidInput,
                   .tried = "sample by the equations of appendix C",
@@ -26,7 +26,7 @@ struct Found {
 };
 
 // The place at which an ascending distribution, 0 at first, reaches `level`.
-Found inverse(const std::vector<double>& below, double level) {
+Found place_of_level(const std::vector<double>& below, double level) {
   const auto above = std::upper_bound(below.begin() + 1, below.end() - 1, level);
   const auto cell = static_cast<std::size_t>(above - below.begin()) - 1;
   const double width = below[cell + 1] - below[cell];
@@ -42,8 +42,8 @@ LiteralSampler::LiteralSampler(const Surface& surface, LiteralCells cells) : sur
 }
 
 Result<LiteralSampler> LiteralSampler::make(const Surface& surface, LiteralCells cells) {
-  GONIO_TRY(check_count("theta", cells.theta));
-  GONIO_TRY(check_count("phi", cells.phi));
+  GONIO_TRY(check_cells("theta", cells.theta));
+  GONIO_TRY(check_cells("phi", cells.phi));
   return LiteralSampler(surface, cells);
 }
 
@@ -74,12 +74,12 @@ DirectionSample LiteralSampler::sample(const Incidence& incidence, UnitPoint dra
   const double level = draw.u * incidence.rho_dh - incidence.specular;
   if (level < 0.0) return {.r = mirrored(incidence.i), .weight = incidence.rho_dh, .is_specular = true};
   const double step = 2.0 * std::numbers::pi / cells_.phi;
-  const Found in_phi = inverse(incidence.share_below, level);
+  const Found in_phi = place_of_level(incidence.share_below, level);
   const Angle phi = radians((static_cast<double>(in_phi.cell) + in_phi.part) * step);
 
   std::vector<double> below;
   const double light = column(incidence.i, phi, below);
-  const Found in_theta = inverse(below, draw.v * light);
+  const Found in_theta = place_of_level(below, draw.v * light);
   const double low = sin2_edges_[in_theta.cell];
   const double sin2 = low + in_theta.part * (sin2_edges_[in_theta.cell + 1] - low);
   return {.r = Direction::from_cosine(std::sqrt(std::max(0.0, 1.0 - sin2)), std::sqrt(sin2), phi),

@@ -10,7 +10,7 @@
 namespace gonio::reflectance {
 namespace {
 
-std::vector<double> shares(const std::vector<SumSampler::Term>& terms) {
+std::vector<double> shares_of_light(const std::vector<SumSampler::Term>& terms) {
   assert(!terms.empty());
   std::vector<double> light;
   for (const SumSampler::Term& term : terms)
@@ -25,8 +25,8 @@ std::vector<double> shares(const std::vector<SumSampler::Term>& terms) {
 }  // namespace
 
 SumSampler::SumSampler(std::vector<Term> terms)
-    : DirectionSampler(terms.at(0).sampler->incidence()), terms_(std::move(terms)), alias_(shares(terms_)) {
-  const std::vector<double> probability = shares(terms_);
+    : DirectionSampler(terms.at(0).sampler->incidence()), terms_(std::move(terms)), alias_(shares_of_light(terms_)) {
+  const std::vector<double> probability = shares_of_light(terms_);
   report_ = {.method = SamplingMethod::Sum};
   double relative_square = 0.0;
   for (std::size_t k = 0; k < terms_.size(); ++k) {

@@ -14,7 +14,7 @@
 namespace gonio::reflectance {
 namespace {
 
-Error refusal(std::string_view field, std::string seen, std::string limit) {
+Error table_refusal(std::string_view field, std::string seen, std::string limit) {
   return {.code = ErrorCode::InvalidInput,
           .tried = "tabulate a surface to sample directions from",
           .seen = std::move(seen),
@@ -24,14 +24,14 @@ Error refusal(std::string_view field, std::string seen, std::string limit) {
 
 Result<void> check_ranges(const SamplerOptions& options) {
   if (!(options.accuracy > 0.0))
-    return failure(refusal("accuracy", fmt::format("accuracy {}", options.accuracy), "above 0"));
+    return failure(table_refusal("accuracy", fmt::format("accuracy {}", options.accuracy), "above 0"));
   constexpr std::size_t kLeast = 512;
   constexpr std::size_t kMost = std::size_t{1} << 28U;
   if (options.most_cells < kLeast || options.most_cells > kMost)
-    return failure(refusal("most_cells", fmt::format("{} cells", options.most_cells), "512 to 2^28"));
+    return failure(table_refusal("most_cells", fmt::format("{} cells", options.most_cells), "512 to 2^28"));
   if (options.use == TableUse::Fast && options.negative_values == NegativeValues::Signed)
-    return failure(
-        refusal("negative_values", "signed weights in a fast table, whose weights are alike", "an unbiased table"));
+    return failure(table_refusal("negative_values", "signed weights in a fast table, whose weights are alike",
+                                 "an unbiased table"));
   return {};
 }
 
@@ -57,10 +57,10 @@ class ChartDensity {
   [[nodiscard]] Result<void> verdict() const {
     if (!wrong_) return {};
     const auto& [r, f] = *wrong_;
-    return failure(refusal("surface",
-                           fmt::format("{} of {} sr^-1 at theta_r {} deg, phi_r {} deg", surface_.model(), f,
-                                       in_degrees(r.theta()), in_degrees(r.phi())),
-                           negative_ == NegativeValues::Refuse ? "finite, at least 0" : "finite"));
+    return failure(table_refusal("surface",
+                                 fmt::format("{} of {} sr^-1 at theta_r {} deg, phi_r {} deg", surface_.model(), f,
+                                             in_degrees(r.theta()), in_degrees(r.phi())),
+                                 negative_ == NegativeValues::Refuse ? "finite, at least 0" : "finite"));
   }
 
  private:
@@ -136,16 +136,17 @@ void TableSampler::make_report(const SamplerOptions& options, const Integral& rh
 
 Result<void> TableSampler::check(const SamplerOptions& options, const Integral& rho) const {
   if (options.use == TableUse::Fast && report_.total_variation > options.accuracy) {
-    return failure(refusal("accuracy",
-                           fmt::format("{} cells misplace a share of {:.2g}", report_.cells, report_.total_variation),
-                           fmt::format("{:.2g} with at most {} cells", options.accuracy, options.most_cells)));
+    return failure(table_refusal(
+        "accuracy", fmt::format("{} cells misplace a share of {:.2g}", report_.cells, report_.total_variation),
+        fmt::format("{:.2g} with at most {} cells", options.accuracy, options.most_cells)));
   }
   if (options.negative_values == NegativeValues::Signed) return {};  // the table is of |f|
   const double tabled = tree_.audit().integral + specular_;
   const double allowed = 2.0 * options.accuracy * rho.value + rho.error;
   if (std::abs(tabled - rho.value) <= allowed) return {};
-  return failure(refusal("surface", fmt::format("the table holds {:.6g} of the light", tabled),
-                         fmt::format("rho_dh {:.6g} +- {:.2g}: the cells have missed a peak", rho.value, allowed)));
+  return failure(
+      table_refusal("surface", fmt::format("the table holds {:.6g} of the light", tabled),
+                    fmt::format("rho_dh {:.6g} +- {:.2g}: the cells have missed a peak", rho.value, allowed)));
 }
 
 double TableSampler::density_per_sr(const Direction& r) const {
