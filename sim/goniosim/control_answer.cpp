@@ -87,7 +87,7 @@ json block_axis(const json& line, bool on, LiveInstrument& instrument) {
   return {{"ok", true}};
 }
 
-json set_fault(const json& line, LiveInstrument& instrument, ModbusServer& stage, GigeCameraServer& camera) {
+json set_fault(const json& line, LiveInstrument& instrument, StageWire& stage, GigeCameraServer& camera) {
   const std::string fault = line.at("fault").get<std::string>();
   const bool on = line.value("on", true);
   if (fault == "axis-blocked") return block_axis(line, on, instrument);
@@ -107,7 +107,7 @@ json set_fault(const json& line, LiveInstrument& instrument, ModbusServer& stage
   return {{"ok", true}};
 }
 
-json answer_line(const json& line, LiveInstrument& instrument, ModbusServer& stage, GigeCameraServer& camera) {
+json answer_line(const json& line, LiveInstrument& instrument, StageWire& stage, GigeCameraServer& camera) {
   if (line.contains("fault")) return set_fault(line, instrument, stage, camera);
   const std::string query = line.value("query", "");
   if (query == "stage") return stage_report(instrument);
@@ -117,7 +117,7 @@ json answer_line(const json& line, LiveInstrument& instrument, ModbusServer& sta
 
 }  // namespace
 
-std::string answer_control(const std::string& line, LiveInstrument& instrument, ModbusServer& stage,
+std::string answer_control(const std::string& line, LiveInstrument& instrument, StageWire& stage,
                            GigeCameraServer& camera) {
   try {
     return answer_line(json::parse(line), instrument, stage, camera).dump();

@@ -29,7 +29,7 @@ bool send_all(int socket, const std::string& text) {
 }  // namespace
 
 Result<std::unique_ptr<ControlServer>> ControlServer::start(const std::string& path, LiveInstrument& instrument,
-                                                            ModbusServer& stage, GigeCameraServer& camera) {
+                                                            StageWire& stage, GigeCameraServer& camera) {
   auto listener = listen_unix(path);
   if (!listener) return failure(std::move(listener).error());
   auto wake_up = make_wake_up();
@@ -41,7 +41,7 @@ Result<std::unique_ptr<ControlServer>> ControlServer::start(const std::string& p
 }
 
 ControlServer::ControlServer(std::string path, FileDescriptor listener, FileDescriptor wake_up,
-                             LiveInstrument& instrument, ModbusServer& stage, GigeCameraServer& camera)
+                             LiveInstrument& instrument, StageWire& stage, GigeCameraServer& camera)
     : path_(std::move(path)),
       listener_(std::move(listener)),
       wake_up_(std::move(wake_up)),

@@ -8,8 +8,8 @@
 #include "base/result.h"
 #include "sim/wires/gige_camera_server.h"
 #include "sim/wires/live_instrument.h"
-#include "sim/wires/modbus_server.h"
 #include "sim/wires/sockets.h"
+#include "sim/wires/stage_wire.h"
 
 namespace gonio::sim {
 
@@ -24,7 +24,7 @@ class ControlServer {
  public:
   /// All three must outlive it. Errors: PortBusy, InvalidInput, Internal.
   [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const std::string& path, LiveInstrument& instrument,
-                                                                    ModbusServer& stage, GigeCameraServer& camera);
+                                                                    StageWire& stage, GigeCameraServer& camera);
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
@@ -36,7 +36,7 @@ class ControlServer {
     bool is_gone = false;
   };
   ControlServer(std::string path, FileDescriptor listener, FileDescriptor wake_up, LiveInstrument& instrument,
-                ModbusServer& stage, GigeCameraServer& camera);
+                StageWire& stage, GigeCameraServer& camera);
   void run(const std::stop_token& stop);
   void receive(Client& client);
 
@@ -44,14 +44,14 @@ class ControlServer {
   FileDescriptor listener_;
   FileDescriptor wake_up_;
   LiveInstrument& instrument_;
-  ModbusServer& stage_;
+  StageWire& stage_;
   GigeCameraServer& camera_;
   std::list<Client> clients_;
   std::jthread thread_;  // last: it uses all of the above
 };
 
 /// The answer to one line. Threads: any.
-[[nodiscard]] std::string answer_control(const std::string& line, LiveInstrument& instrument, ModbusServer& stage,
+[[nodiscard]] std::string answer_control(const std::string& line, LiveInstrument& instrument, StageWire& stage,
                                          GigeCameraServer& camera);
 
 }  // namespace gonio::sim

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -51,6 +52,12 @@ void describe_options(CLI::App& app, Options& options) {
   app.add_option("--time-scale", options.time_scale, "scene seconds in one second")->check(CLI::Range(1e-3, 1e6));
   app.add_option("--state", options.state,
                  "folder for ports, positions, counters and the files for goniod; temporary if not given");
+  const std::map<std::string, bool> wires{{"tcp", false}, {"rtu", true}};
+  app.add_option("--stage-wire", options.wishes.wants_rtu,
+                 "tcp, or rtu: a serial line behind STATE/stage.tty, 8 data bits, no parity, 2 stop bits")
+      ->transform(CLI::CheckedTransformer(wires));
+  app.add_option("--baud", options.wishes.stage_baud, "speed of that line, which the replies keep")
+      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600}));
   app.add_option("--modbus-port", options.wishes.stage_port, "TCP port of the stage on 127.0.0.1");
   app.add_option("--camera-address", options.wishes.camera_address, "the camera's address, any of 127.0.0.0/8");
   CLI::App* truth = app.add_subcommand("truth", "print the sample's true BRDF at the rows of a CSV");
@@ -76,7 +83,7 @@ std::variant<Options, int> parse(int argc, char** argv) {
     }
   }
   CLI::App app(
-      "A simulated gonioreflectometer: stage on Modbus TCP, camera on GigE Vision.\n"
+      "A simulated gonioreflectometer: stage on Modbus TCP or RTU, camera on GigE Vision.\n"
       "  goniosim SCENE [--state DIR] [OPTIONS] [-- PROGRAM ARGS...]\n"
       "  goniosim truth SCENE [--seed N] --points FILE.csv",
       "goniosim");
@@ -181,9 +188,11 @@ int simulate(const Options& options) {
   if (!simulator) return fail(simulator.error());
   const WireAddresses& addresses = (*simulator)->addresses();
   const Scene& running = (*simulator)->instrument().scene();
-  spdlog::info("scene \"{}\", seed {}, {} scene seconds a second: stage on {}:{}, camera on {}, files in {}",
-               running.name, running.seed, running.time_scale, addresses.stage_host, addresses.stage_port,
-               addresses.camera_address, (*simulator)->folder().path());
+  const std::string stage = addresses.stage_line.empty()
+                                ? fmt::format("{}:{}", addresses.stage_host, addresses.stage_port)
+                                : fmt::format("{} at {} baud", addresses.stage_line, addresses.stage_baud);
+  spdlog::info("scene \"{}\", seed {}, {} scene seconds a second: stage on {}, camera on {}, files in {}", running.name,
+               running.seed, running.time_scale, stage, addresses.camera_address, (*simulator)->folder().path());
   std::optional<Child> child;
   if (!options.daemon.empty()) {
     auto started = Child::start(options.daemon, this_executable(), (*simulator)->folder().path());

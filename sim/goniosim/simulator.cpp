@@ -5,6 +5,9 @@
 #include <cstdint>
 #include <functional>
 
+#include "sim/wires/modbus_server.h"
+#include "sim/wires/rtu_server.h"
+
 namespace gonio::sim {
 namespace {
 
@@ -41,12 +44,26 @@ Simulator::~Simulator() {
   (void)save();  // on the way out there is nobody left to tell
 }
 
-Result<void> Simulator::bind(const SimulatorState& last, const WireWishes& wishes) {
+Result<void> Simulator::bind_stage(const SimulatorState& last, const WireWishes& wishes) {
+  if (wishes.wants_rtu) {
+    addresses_.stage_port = last.stage_port;
+    addresses_.stage_line = folder_.stage_line();
+    addresses_.stage_baud = wishes.stage_baud;
+    auto stage = RtuServer::start(instrument_, addresses_.stage_line, {.baud = wishes.stage_baud});
+    if (!stage) return failure(std::move(stage).error());
+    stage_ = *std::move(stage);
+    return {};
+  }
   const std::uint16_t port = wishes.stage_port != 0 ? wishes.stage_port : last.stage_port;
   auto stage = ModbusServer::start(instrument_, addresses_.stage_host, port);
   if (!stage) return failure(std::move(stage).error());
+  addresses_.stage_port = (*stage)->port();
   stage_ = *std::move(stage);
-  addresses_.stage_port = stage_->port();
+  return {};
+}
+
+Result<void> Simulator::bind(const SimulatorState& last, const WireWishes& wishes) {
+  GONIO_TRY(bind_stage(last, wishes));
   GONIO_TRY(bind_camera(wishes.camera_address.empty() ? last.camera_address : wishes.camera_address));
   auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_, *camera_);
   if (!control) return failure(std::move(control).error());

@@ -9,12 +9,14 @@
 #include "sim/goniosim/state_folder.h"
 #include "sim/wires/gige_camera_server.h"
 #include "sim/wires/live_instrument.h"
-#include "sim/wires/modbus_server.h"
+#include "sim/wires/stage_wire.h"
 
 namespace gonio::sim {
 
 /// Which addresses are asked for; what is left open is the last run's, or free.
 struct WireWishes {
+  bool wants_rtu = false;  ///< the stage on a serial line instead of TCP
+  int stage_baud = 115200;
   std::uint16_t stage_port = 0;
   std::string camera_address;
 };
@@ -40,6 +42,7 @@ class Simulator {
  private:
   Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, const Clock& clock);
   [[nodiscard]] Result<void> bind(const SimulatorState& last, const WireWishes& wishes);
+  [[nodiscard]] Result<void> bind_stage(const SimulatorState& last, const WireWishes& wishes);
   [[nodiscard]] Result<void> bind_camera(const std::string& wished);
 
   StateFolder folder_;
@@ -48,7 +51,7 @@ class Simulator {
   std::uint64_t saved_exposures_ = 0;
   std::uint64_t saved_moves_ = 0;
   bool has_saved_ = false;
-  std::unique_ptr<ModbusServer> stage_;
+  std::unique_ptr<StageWire> stage_;
   std::unique_ptr<GigeCameraServer> camera_;
   std::unique_ptr<ControlServer> control_;
 };

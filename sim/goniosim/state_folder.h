@@ -35,6 +35,7 @@ class StateFolder {
   void remove_ready() const;
 
   [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::string stage_line() const { return path_ + "/stage.tty"; }
   [[nodiscard]] std::string control_socket() const { return path_ + "/control.sock"; }
   [[nodiscard]] std::string instrument_file() const { return path_ + "/instrument.toml"; }
 

@@ -38,13 +38,21 @@ double homing_time_s(const Scene& scene) {
   return 2.0 * wall_s(scene, longest) + kPatience;
 }
 
+std::string stage_address_lines(const WireAddresses& addresses) {
+  if (addresses.stage_line.empty()) {
+    return fmt::format("link = \"tcp\"\naddress = \"{}\"\nport = {}\n", addresses.stage_host, addresses.stage_port);
+  }
+  return fmt::format("link = \"rtu\"\naddress = \"{}\"\nbaud = {}\nparity = \"none\"\nstop_bits = 2\n",
+                     addresses.stage_line, addresses.stage_baud);
+}
+
 std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
   constexpr double kPatience = 2.0;
   std::string text = fmt::format(
-      "\n[stage]\nlink = \"tcp\"\naddress = \"{}\"\nport = {}\nreply_timeout_s = 1.0\nhoming_time_s = {:.3f}\n"
+      "\n[stage]\n{}reply_timeout_s = 1.0\nhoming_time_s = {:.3f}\n"
       "shutter_time_s = {:.3f}\nheartbeat_timeout_s = {}\ndeadline_factor = 1.5\ndeadline_margin_s = {}\n",
-      addresses.stage_host, addresses.stage_port, homing_time_s(scene),
-      2.0 * wall_s(scene, scene.stage.shutter_s) + kPatience, scene.stage.heartbeat_timeout_wall_s, kPatience);
+      stage_address_lines(addresses), homing_time_s(scene), 2.0 * wall_s(scene, scene.stage.shutter_s) + kPatience,
+      scene.stage.heartbeat_timeout_wall_s, kPatience);
   for (const Axis axis : stage::kAllAxes) text += axis_section(scene, axis);
   text += fmt::format("\n[stage.carriage]\nsample_mm = {}\nreference_mm = {}\ntrap_mm = {}\n", scene.stage.sample_mm,
                       scene.stage.reference_mm, scene.stage.trap_mm);

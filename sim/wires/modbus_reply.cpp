@@ -4,6 +4,7 @@
 #include <modbus/modbus.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -166,6 +167,17 @@ std::vector<std::uint8_t> ModbusReply::answer(std::span<const std::uint8_t> requ
   std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> frame{};
   const ssize_t n = ::recv(impl_->ours.get(), frame.data(), frame.size(), MSG_DONTWAIT);
   return n <= 0 ? std::vector<std::uint8_t>() : std::vector<std::uint8_t>(frame.begin(), frame.begin() + n);
+}
+
+std::vector<std::uint8_t> ModbusReply::answer_pdu(std::uint8_t unit, std::span<const std::uint8_t> pdu,
+                                                  StageFace& stage, Instant now) {
+  const std::size_t length = pdu.size() + 1;  // with the unit
+  std::vector<std::uint8_t> request{
+      0, 0, 0, 0, static_cast<std::uint8_t>(length >> 8U), static_cast<std::uint8_t>(length), unit};
+  request.insert(request.end(), pdu.begin(), pdu.end());
+  std::vector<std::uint8_t> reply = answer(request, stage, now);
+  reply.erase(reply.begin(), reply.begin() + static_cast<std::ptrdiff_t>(std::min(kPdu, reply.size())));
+  return reply;
 }
 
 }  // namespace gonio::sim

@@ -25,6 +25,9 @@ class ModbusReply {
 
   /// `request` at least 8 bytes long, as its MBAP header says. Writes act before reads are answered.
   [[nodiscard]] std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request, StageFace& stage, Instant now);
+  /// The same for a PDU, at least 1 byte, of a wire with another frame about it; the PDU of the reply.
+  [[nodiscard]] std::vector<std::uint8_t> answer_pdu(std::uint8_t unit, std::span<const std::uint8_t> pdu,
+                                                     StageFace& stage, Instant now);
 
  private:
   struct Impl;

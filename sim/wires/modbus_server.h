@@ -12,25 +12,25 @@
 #include "sim/wires/live_instrument.h"
 #include "sim/wires/modbus_reply.h"
 #include "sim/wires/sockets.h"
+#include "sim/wires/stage_wire.h"
 
 namespace gonio::sim {
 
 /// The stage on Modbus TCP: many clients, one thread, whole requests only, so that one who stalls in mid-frame or never
 /// reads holds up nobody, STOP least of all. Threads: any.
-class ModbusServer {
+class ModbusServer final : public StageWire {
  public:
   /// Serves from here on. `instrument` must outlive it. Errors: PortBusy, InvalidInput, Internal.
   [[nodiscard]] static Result<std::unique_ptr<ModbusServer>> start(LiveInstrument& instrument,
                                                                    const std::string& address, std::uint16_t port);
-  ~ModbusServer();
+  ~ModbusServer() override;
   ModbusServer(const ModbusServer&) = delete;
   ModbusServer& operator=(const ModbusServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const { return port_of(listener_); }
-  /// Requests are read, and neither acted upon nor answered.
-  void set_silent(bool on) { is_silent_ = on; }
+  void set_silent(bool on) override { is_silent_ = on; }
   /// Every connection is closed, and every new one at once.
-  void set_refusing(bool on);
+  void set_refusing(bool on) override;
 
  private:
   struct Client {

@@ -43,6 +43,17 @@ TEST(InstrumentToml, IsReadByTheDaemonAndSaysEverythingInWallTime) {
   EXPECT_DOUBLE_EQ(in_degrees(read->model.angles.u_zero_phi_r), 0.04);
 }
 
+TEST(InstrumentToml, NamesTheSerialLineWhenTheStageIsOnOne) {
+  const std::string text = instrument_toml(full_scene(), {.stage_line = "/run/sim/stage.tty", .stage_baud = 38400});
+
+  const auto read = daemon::parse_instrument(text, "instrument.toml");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  ASSERT_TRUE(read->stage_address.serial.has_value());
+  EXPECT_EQ(read->stage_address.serial->device, "/run/sim/stage.tty");
+  EXPECT_EQ(read->stage_address.serial->baud, 38400);
+}
+
 TEST(InstrumentToml, NamesExposuresThatTheCameraTakes) {
   Bench bench(full_scene());
   const auto read = daemon::parse_instrument(instrument_toml(full_scene(), {}), "instrument.toml");
