@@ -2,11 +2,15 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
 namespace gonio::daemon {
 namespace {
+
+// Where and over what a device is reached; each is left out where its table has it.
+constexpr std::array<std::string_view, 6> kStageAddress{"link", "address", "port", "baud", "parity", "stop_bits"};
 
 // The line of `key` in `[table]`, if that key starts the line it stands on.
 void add_address_line(TomlReader root, std::string_view table, std::string_view key, std::set<int>& lines) {
@@ -20,7 +24,7 @@ bool starts_with_key(std::string_view line) {
   if (first == std::string_view::npos) return false;
   const std::string_view rest = line.substr(first);
   const std::size_t end = rest.find_first_of(" \t=");
-  return rest.substr(0, end) == "address" || rest.substr(0, end) == "port";
+  return std::find(kStageAddress.begin(), kStageAddress.end(), rest.substr(0, end)) != kStageAddress.end();
 }
 
 }  // namespace
@@ -35,8 +39,7 @@ std::string sha256_hex(std::string_view text) {
 
 std::string configuration_hash(const TomlReader& root, std::string_view text) {
   std::set<int> left_out;
-  add_address_line(root, "stage", "address", left_out);
-  add_address_line(root, "stage", "port", left_out);
+  for (const std::string_view key : kStageAddress) add_address_line(root, "stage", key, left_out);
   add_address_line(root, "detector", "address", left_out);
   std::string hashed;
   int number = 1;

@@ -75,10 +75,28 @@ drivers::StageConfig read_stage_config(TomlReader& table) {
   return stage;
 }
 
+drivers::SerialLine read_serial_line(TomlReader& table) {
+  constexpr std::array<std::string_view, 3> kParities{"none", "even", "odd"};  // in the order of drivers::Parity
+  drivers::SerialLine line;
+  line.device = table.text("address");
+  line.baud = static_cast<int>(table.integer("baud", 1, 1'000'000));
+  if (std::find(std::begin(drivers::kBaudRates), std::end(drivers::kBaudRates), line.baud) ==
+      std::end(drivers::kBaudRates)) {
+    table.fail("baud", ErrorCode::InvalidInput, fmt::format("value {}", line.baud),
+               fmt::format("one of {}", fmt::join(drivers::kBaudRates, ", ")));
+  }
+  line.parity = static_cast<drivers::Parity>(table.choice("parity", kParities));
+  line.stop_bits = static_cast<int>(table.integer("stop_bits", 1, 2));
+  return line;
+}
+
 StageAddress read_stage_address(TomlReader& table) {
-  constexpr std::array<std::string_view, 1> kLinks{"tcp"};
-  (void)table.choice("link", kLinks);
+  constexpr std::array<std::string_view, 2> kLinks{"tcp", "rtu"};
   StageAddress address;
+  if (kLinks[table.choice("link", kLinks)] == "rtu") {
+    address.serial = read_serial_line(table);
+    return address;
+  }
   address.host = table.text("address");
   address.port = static_cast<std::uint16_t>(table.integer("port", 1, 65535));
   return address;
@@ -217,7 +235,6 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
   if (!root) return failure(std::move(root).error());
   Instrument instrument;
   instrument.text = text;
-  instrument.sha256 = configuration_hash(*root, text);
   TomlReader about = root->table("instrument");
   instrument.name = about.text("name");
   const std::filesystem::path directory = about.text_or("reference_directory", "reference");
@@ -233,6 +250,7 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
   instrument.model.lamp = read_lamp_model(lamp);
   instrument.lamp = read_lamp_band(lamp);
   GONIO_TRY(root->finish());
+  instrument.sha256 = configuration_hash(*root, text);  // last: it asks for keys that this wire may not have
   return instrument;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,14 +11,16 @@
 #include "base/units.h"
 #include "calibration/frame_reduction.h"
 #include "calibration/instrument_model.h"
+#include "drivers/links/serial_line.h"
 #include "drivers/stage_config.h"
 
 namespace gonio::daemon {
 
-/// Where the stage answers: Modbus TCP. Not part of the configuration's hash.
+/// Where the stage answers: Modbus TCP, or Modbus RTU on a serial line. Not part of the configuration's hash.
 struct StageAddress {
   std::string host;
   std::uint16_t port = 0;
+  std::optional<drivers::SerialLine> serial;  ///< when set, host and port are not
 };
 
 /// Where the carriage stands for each target.

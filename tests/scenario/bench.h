@@ -20,6 +20,7 @@ struct SceneOptions {
   double time_scale = 40.0;
   bool draw_errors = true;
   std::uint64_t seed = 1;
+  std::string stage_wire = "tcp";  ///< or "rtu"; of the simulator, not of the scene's file
 };
 /// A grey Lambertian card on the bench of sim/scenes.
 [[nodiscard]] std::string scene_text(const SceneOptions& options);

@@ -49,7 +49,8 @@ struct SeenExposures {
 class Simulator {
  public:
   /// Everything it writes lies below `folder`. It has a camera address of its own.
-  Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed);
+  Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed,
+            const std::string& stage_wire = "tcp");
 
   [[nodiscard]] const std::string& state_folder() const { return state_; }
   [[nodiscard]] std::string instrument_file() const { return state_ + "/instrument.toml"; }

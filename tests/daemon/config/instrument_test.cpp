@@ -168,6 +168,49 @@ TEST(ConfigurationHash, DoesNotSeeAddresses) {
   EXPECT_EQ(read(moved).stage_address.port, 502);
 }
 
+constexpr const char* kSerialLines = "address = \"/dev/ttyUSB0\"\nbaud = 19200\nparity = \"odd\"\nstop_bits = 2\n#";
+
+std::string on_a_serial_line() {
+  return with(with(with(whole_text(), "link = \"tcp\"", "link = \"rtu\""), "address = \"127.0.0.1\"", kSerialLines),
+              "port = 1502", "#");
+}
+
+TEST(Instrument, HasItsStageOnASerialLineWhenTheFileSaysSo) {
+  const Instrument instrument = read(on_a_serial_line());
+
+  ASSERT_TRUE(instrument.stage_address.serial.has_value());
+  EXPECT_EQ(instrument.stage_address.serial->device, "/dev/ttyUSB0");
+  EXPECT_EQ(instrument.stage_address.serial->baud, 19200);
+  EXPECT_EQ(instrument.stage_address.serial->parity, drivers::Parity::Odd);
+  EXPECT_EQ(instrument.stage_address.serial->stop_bits, 2);
+  EXPECT_FALSE(read(whole_text()).stage_address.serial.has_value());
+}
+
+TEST(Instrument, RefusesASpeedThatTheLineDoesNotHave) {
+  const auto instrument =
+      parse_instrument(with(on_a_serial_line(), "baud = 19200", "baud = 12345"), "bench/instrument.toml");
+
+  ASSERT_FALSE(instrument.has_value());
+  EXPECT_EQ(instrument.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(instrument.error().where->field, "stage.baud");
+  EXPECT_GT(instrument.error().where->line, 0);
+  EXPECT_THAT(instrument.error().limit, HasSubstr("9600, 19200, 38400"));
+}
+
+TEST(Instrument, RefusesAPortOnASerialLine) {
+  const auto instrument =
+      parse_instrument(with(on_a_serial_line(), "stop_bits = 2", "stop_bits = 2\nport = 502"), "instrument.toml");
+
+  ASSERT_FALSE(instrument.has_value());
+  EXPECT_EQ(instrument.error().code, ErrorCode::UnknownKey);
+}
+
+TEST(ConfigurationHash, DoesNotSeeTheSpeedOfTheLine) {
+  const std::string faster = with(on_a_serial_line(), "baud = 19200", "baud = 9600");
+
+  EXPECT_EQ(read(faster).sha256, read(on_a_serial_line()).sha256);
+}
+
 TEST(ConfigurationHash, SeesEverythingElse) {
   const std::string text = whole_text();
 
