@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "reflectance/integral/directional_reflectance.h"
+#include "reflectance/integral/refinement.h"
+#include "reflectance/surface/smooth_part.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -16,17 +18,6 @@ namespace {
 constexpr double kFinest = 1e-12;
 constexpr double kCoarsest = 1e-2;
 constexpr std::size_t kMostTrials = 400;  // of pieces: some 5000 direct integrals
-
-// A surface that has lost its mirror part.
-struct SmoothPart {
-  Surface surface;
-  [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const { return surface.eval(i, r); }
-  [[nodiscard]] std::optional<double> rho_dh(const Direction& i) const { return surface.closed_rho_dh(i); }
-  [[nodiscard]] std::string_view model() const { return surface.model(); }
-  [[nodiscard]] Parameters parameters() const { return surface.parameters(); }
-  [[nodiscard]] bool is_isotropic() const { return surface.is_isotropic(); }
-  [[nodiscard]] Feature feature() const { return surface.feature(); }
-};
 
 // A sum is integrated term by term, each by its own method.
 Integral smooth_rho_dh(const Surface& surface, const Direction& i, double tolerance) {
@@ -108,7 +99,7 @@ void PreparedReflectance::prepare(Cells cells) {
     pieces_.push_back(piece);
     return;
   }
-  if (cells.count == 1 || trials_ >= kMostTrials) return;
+  if (cells.count == 1 || trials_ >= kMostTrials || evaluations_ >= kMostRefinedEvaluations) return;
   const std::size_t half = cells.count / 2;
   prepare({.first = cells.first + half, .count = half});
   prepare({.first = cells.first, .count = half});

@@ -11,7 +11,7 @@
 
 namespace gonio::reflectance {
 
-/// rho_dh of one isotropic surface, made once and read at any incidence in some 20 ns: for those who ask for it again
+/// rho_dh of one isotropic surface, made once and read at any incidence in some 10 ns: for those who ask for it again
 /// and again, as a photon's weight or an outer integral does.
 ///
 /// The smooth part is held as polynomials in v = sqrt(mu_i), on pieces halved until the tolerance is met at the points
@@ -21,7 +21,8 @@ namespace gonio::reflectance {
 class PreparedReflectance {
  public:
   /// `relative_tolerance` in [1e-12, 1e-2], of the smooth part. Costs some hundred direct integrals, each ten times as
-  /// close. Errors: InvalidInput, for a surface that is not isotropic or a tolerance outside.
+  /// close: 0.1 s for wheat at 1e-6, seconds for a narrow lobe. After 1e8 evaluations what is left falls back. Errors:
+  /// InvalidInput, for a surface that is not isotropic or a tolerance outside.
   [[nodiscard]] static Result<PreparedReflectance> make(const Surface& surface, double relative_tolerance = 1e-8);
 
   /// As rho_dh(surface, i, relative_tolerance) of directional_reflectance.h. `error` is the piece's own: twice what was

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -46,18 +47,27 @@ class RuleSum {
 /// Of nodes, weights and their products, relative; sums are compensated.
 constexpr double kRuleRounding = 1e-15;
 
+/// Of a refinement with all that is nested in it: seconds for a formula, a minute for a table of readings.
+constexpr std::uint64_t kMostRefinedEvaluations = 100'000'000;
+
 /// Raises the level from `first` to at most `last`, until two levels agree to `relative_tolerance`. The difference is
 /// taken as the error of the finer one, which for the rules used here is far too careful: theirs is the square of it.
+/// Where an integrand may be rough, two levels can agree by chance: then `doubt` of the step before counts too. No
+/// level is begun that, costing twice the one before, would lead beyond kMostRefinedEvaluations.
 template <class AtLevel>
-[[nodiscard]] Integral refined(int first, int last, double relative_tolerance, AtLevel at_level) {
+[[nodiscard]] Integral refined(int first, int last, double relative_tolerance, AtLevel at_level, double doubt = 0.0) {
   RuleSum coarse = at_level(first);
   Integral result{.evaluations = coarse.evaluations()};
+  double last_step = std::abs(coarse.value());
   for (int level = first + 1; level <= last; ++level) {
     const RuleSum fine = at_level(level);
+    const double step = std::abs(fine.value() - coarse.value());
     result.value = fine.value();
-    result.error = std::abs(fine.value() - coarse.value()) + fine.error() + kRuleRounding * fine.size();
+    result.error = std::max(step, doubt * last_step) + fine.error() + kRuleRounding * fine.size();
     result.evaluations += fine.evaluations();
     if (result.error <= relative_tolerance * fine.size()) break;
+    if (result.evaluations + 2 * fine.evaluations() > kMostRefinedEvaluations) break;
+    last_step = step;
     coarse = fine;
   }
   return result;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kFirstLevel = 1;
 constexpr int kLastLevel = 6;
+constexpr double kDoubt = 0.25;       // a sky may be any function
 constexpr int kLastProductLevel = 4;  // of a surface that needs rho_dh at each azimuth too
 
 // A direction that light comes from, and how much of it.
@@ -84,10 +85,11 @@ double total_of(const std::vector<LitNode>& nodes) {
   return total;
 }
 
-// What counts little need not be known well.
-double tolerance_for(const LitNode& node, double total, double relative_tolerance) {
+// What counts little need not be known well: all nodes together may be two fifths of the tolerance off.
+double tolerance_for(const LitNode& node, double total, std::size_t nodes, double relative_tolerance) {
   const double share = node.irradiance / total;
-  return std::clamp(0.1 * relative_tolerance / share, 0.1 * relative_tolerance, 1e-2);
+  const double even = 0.3 * relative_tolerance / (share * static_cast<double>(nodes));
+  return std::clamp(even, 0.1 * relative_tolerance, 1e-2);
 }
 
 RuleSum sent_up_at(const Surface& leaf, const LightSource& source, int level, double relative_tolerance, Watch& watch) {
@@ -98,7 +100,7 @@ RuleSum sent_up_at(const Surface& leaf, const LightSource& source, int level, do
   sum.add(Integral{.evaluations = watch.radiances() - before}, 0.0);
   for (const LitNode& node : nodes) {
     if (node.irradiance <= 0.0 || watch.error()) continue;
-    sum.add(rho_dh(leaf, node.i, tolerance_for(node, total, relative_tolerance)), node.irradiance);
+    sum.add(rho_dh(leaf, node.i, tolerance_for(node, total, nodes.size(), relative_tolerance)), node.irradiance);
   }
   return sum;
 }
@@ -123,8 +125,8 @@ Integral irradiance_of(const LightSource& source, double relative_tolerance, Wat
     const double mu = Direction::from_angles(disk->place().theta, Angle{}).mu();
     return Integral::closed(disk->radiance() * std::numbers::pi * sine * sine * mu);
   }
-  Integral result = refined(kFirstLevel, kLastLevel, relative_tolerance,
-                            [&](int level) { return irradiance_at(source, level, watch); });
+  const auto at_level = [&](int level) { return irradiance_at(source, level, watch); };
+  Integral result = refined(kFirstLevel, kLastLevel, relative_tolerance, at_level, kDoubt);
   // Where the horizon cuts a disk is known to the rounding of its angles.
   constexpr double kAngleRounding = 1e-15;
   if (const auto* disk = std::get_if<SunDisk>(&source)) {
@@ -141,8 +143,8 @@ Integral sent_up(const Surface& leaf, const LightSource& source, double relative
   }
   const Surface seen = watched(leaf, watch);
   const int last = leaf.is_isotropic() ? kLastLevel : kLastProductLevel;
-  return refined(kFirstLevel, last, relative_tolerance,
-                 [&](int level) { return sent_up_at(seen, source, level, relative_tolerance, watch); });
+  const auto at_level = [&](int level) { return sent_up_at(seen, source, level, relative_tolerance, watch); };
+  return refined(kFirstLevel, last, relative_tolerance, at_level, kDoubt);
 }
 
 }  // namespace gonio::reflectance

@@ -68,6 +68,12 @@ Result<LitIntegral> checked(const Integral& integral, const Watch& watch) {
                      .has_negative_brdf = watch.has_seen_negative_brdf()};
 }
 
+// Azimuths that were turned to and fro differ by some 1e-16 rad.
+bool is_same(const Direction& a, const Direction& b) {
+  constexpr Angle kSameWithin = radians(1e-12);
+  return phase_angle(a, b) <= kSameWithin;
+}
+
 // What the mirror part sends into r: R_F L_i of the one direction that is mirrored there.
 Result<double> mirrored_radiance(const Surface& surface, const Light& light, const Direction& r, Watch& watch) {
   const Direction i = mirrored(r);
@@ -81,7 +87,7 @@ Result<double> mirrored_radiance(const Surface& surface, const Light& light, con
       radiance += part.weight * disk->radiance();
     }
     const auto* beam = std::get_if<Beam>(&part.source);
-    if (beam == nullptr || beam->direction() != i || beam->irradiance() == 0.0) continue;
+    if (beam == nullptr || !is_same(beam->direction(), i) || beam->irradiance() == 0.0) continue;
     return failure({.code = ErrorCode::InvalidInput,
                     .tried = "find the radiance that a mirror sends up",
                     .seen = fmt::format("the image of a beam at theta {:.9g} deg, phi {:.9g} deg, where it is infinite",

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "reflectance/integral/hemisphere_integral.h"
 #include "reflectance/light/brightness.h"
 
 namespace gonio::reflectance {
@@ -20,6 +21,24 @@ struct Watched {
 
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const {
     return per_steradian(watch->brdf(surface, i, r));
+  }
+  void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f) const {
+    surface.eval_fast(i, r, f);
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      if (is_brightness(f[k].si())) continue;
+      f[k] = per_steradian(watch->noted_brdf(f[k], surface, i, r.at(k)));
+    }
+  }
+  [[nodiscard]] FastPath fast_path() const { return surface.fast_path(); }
+  // A quadrature of the model's own does not pass by here: some views stand for its nodes.
+  [[nodiscard]] std::optional<Integral> rho_dh(const Direction& i, double relative_tolerance) const {
+    const std::optional<Integral> own = surface.own_rho_dh(i, relative_tolerance);
+    if (own) {
+      for (const HemisphereNode& node : gauss_rings(8, 16, RingSpacing::Mu)) {
+        static_cast<void>(watch->brdf(surface, i, node.direction));
+      }
+    }
+    return own;
   }
   [[nodiscard]] double specular(const Direction& i) const { return surface.specular(i); }
   [[nodiscard]] std::string_view model() const { return surface.model(); }
@@ -55,7 +74,11 @@ double Watch::noted(double value, const Direction& i) {
 }
 
 double Watch::brdf(const Surface& surface, const Direction& i, const Direction& r) {
-  const double value = in_per_steradian(surface.eval(i, r));
+  return noted_brdf(surface.eval(i, r), surface, i, r);
+}
+
+double Watch::noted_brdf(Brdf f, const Surface& surface, const Direction& i, const Direction& r) {
+  const double value = in_per_steradian(f);
   if (value >= 0.0 && std::isfinite(value)) return value;
   if (std::isfinite(value)) {
     has_seen_negative_brdf_ = true;

@@ -19,6 +19,8 @@ class Watch {
   [[nodiscard]] std::optional<double> ring_mean(const Sky& sky, const Direction& i);
   /// f; a value that is not finite is noted and read as 0, a negative one is noted and counts.
   [[nodiscard]] double brdf(const Surface& surface, const Direction& i, const Direction& r);
+  /// The same for a value of `surface` that is there already.
+  [[nodiscard]] double noted_brdf(Brdf f, const Surface& surface, const Direction& i, const Direction& r);
 
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
   [[nodiscard]] bool has_seen_negative_brdf() const { return has_seen_negative_brdf_; }

@@ -8,6 +8,7 @@
 
 #include "reflectance/sampling/hemisphere_chart.h"
 #include "reflectance/sampling/table_sampler.h"
+#include "reflectance/surface/smooth_part.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -22,16 +23,6 @@ Error rows_refusal(std::string_view field, std::string seen, std::string limit) 
           .where = InputLocation{.file = {}, .field = std::string(field)}};
 }
 
-// A surface without its mirror part: that is drawn apart, by its exact share.
-struct SmoothPart {
-  Surface surface;
-  [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const { return surface.eval(i, r); }
-  [[nodiscard]] std::string_view model() const { return surface.model(); }
-  [[nodiscard]] Parameters parameters() const { return surface.parameters(); }
-  [[nodiscard]] bool is_isotropic() const { return surface.is_isotropic(); }
-  [[nodiscard]] Feature feature() const { return surface.feature(); }
-};
-
 Direction turned_by(const Direction& d, Angle phi) {
   return Direction::from_cosine(d.mu(), d.sin_theta(), d.phi() + phi);
 }
@@ -44,8 +35,8 @@ struct AnyIncidenceSampler::Row {
 };
 
 Result<AnyIncidenceSampler> AnyIncidenceSampler::make(const Surface& surface, const RowOptions& options) {
-  if (options.most_rows < 9 || options.most_rows > 4097)
-    return failure(rows_refusal("most_rows", fmt::format("{} rows", options.most_rows), "9 to 4097"));
+  if (options.most_rows < 9 || options.most_rows > 513)
+    return failure(rows_refusal("most_rows", fmt::format("{} rows", options.most_rows), "9 to 513"));
   if (!(options.most_ratio > 1.0))
     return failure(rows_refusal("most_ratio", fmt::format("ratio {}", options.most_ratio), "above 1"));
   if (!surface.is_isotropic())

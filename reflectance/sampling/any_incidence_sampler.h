@@ -13,7 +13,7 @@
 namespace gonio::reflectance {
 
 struct RowOptions {
-  std::size_t most_rows = 129;  ///< 9 to 4097; some 60 kB each
+  std::size_t most_rows = 129;  ///< 9 to 513; some 60 kB each
   double most_ratio = 2.0;      ///< of a weight to their mean, half-way between two rows; above 1
 };
 

@@ -14,6 +14,8 @@ Result<std::unique_ptr<const DirectionSampler>> make_sum(const Surface& surface,
                                                          const SamplerOptions& options) {
   std::vector<SumSampler::Term> terms;
   for (const SurfaceTerm& term : surface.terms()) {
+    const bool is_only_one = terms.empty() && &term == &surface.terms().back();
+    if (term.weight == 0.0 && !is_only_one) continue;
     auto sampler = make_sampler(term.surface, i, options);
     if (!sampler) return failure(std::move(sampler).error());
     terms.push_back({.weight = term.weight, .sampler = *std::move(sampler)});

@@ -22,7 +22,7 @@ struct SamplerOptions {
   /// Of a table: the share of draws that it may misplace (total variation). Fast refuses a surface for which it is not
   /// reached; Unbiased does its best, for there it costs no more than variance. Above 0.
   double accuracy = 2e-3;
-  std::size_t most_cells = 65536;  ///< 72 bytes each; 512 to 2^28
+  std::size_t most_cells = 65536;  ///< 72 bytes each; 512 to 2^22
   NegativeValues negative_values = NegativeValues::Refuse;
 };
 

@@ -13,8 +13,11 @@ namespace {
 std::vector<double> shares_of_light(const std::vector<SumSampler::Term>& terms) {
   assert(!terms.empty());
   std::vector<double> light;
-  for (const SumSampler::Term& term : terms)
-    light.push_back(std::max(0.0, term.weight * term.sampler->report().rho_dh));
+  for (const SumSampler::Term& term : terms) {
+    const SamplerReport& part = term.sampler->report();
+    // A term whose signed values cancel, or more than that, is drawn by its size.
+    light.push_back(term.weight * (part.rho_dh > 0.0 ? part.rho_dh : part.most_weight));
+  }
   const double sum = std::accumulate(light.begin(), light.end(), 0.0);
   // A black sum has to be drawn from all the same, with weight 0.
   if (sum == 0.0) return std::vector<double>(light.size(), 1.0 / static_cast<double>(light.size()));

@@ -26,9 +26,9 @@ Result<void> check_ranges(const SamplerOptions& options) {
   if (!(options.accuracy > 0.0))
     return failure(table_refusal("accuracy", fmt::format("accuracy {}", options.accuracy), "above 0"));
   constexpr std::size_t kLeast = 512;
-  constexpr std::size_t kMost = std::size_t{1} << 28U;
+  constexpr std::size_t kMost = std::size_t{1} << 22U;
   if (options.most_cells < kLeast || options.most_cells > kMost)
-    return failure(table_refusal("most_cells", fmt::format("{} cells", options.most_cells), "512 to 2^28"));
+    return failure(table_refusal("most_cells", fmt::format("{} cells", options.most_cells), "512 to 2^22"));
   if (options.use == TableUse::Fast && options.negative_values == NegativeValues::Signed)
     return failure(table_refusal("negative_values", "signed weights in a fast table, whose weights are alike",
                                  "an unbiased table"));

@@ -85,6 +85,14 @@ TEST(ReflectedRadiance, RefusesTheMirrorImageOfABeam) {
   EXPECT_EQ(reflected_radiance(mirror(), beam, Direction::from_angles(41_deg, 100_deg))->value, 0.0);
 }
 
+TEST(ReflectedRadiance, RefusesTheMirrorImageOfABeamWhateverItsAzimuthsRounding) {
+  for (int k = 0; k < 360; ++k) {
+    const Angle phi = degrees(0.1 + k);
+    const Light beam = Beam::make(Direction::from_angles(40_deg, phi), 1.0).value();
+    EXPECT_FALSE(reflected_radiance(mirror(), beam, Direction::from_angles(40_deg, phi + 180_deg))) << k;
+  }
+}
+
 TEST(RemoteSensingReflectance, OfALambertianSurfaceIsRhoByPi) {
   for (const NamedLight& named : lights()) {
     SCOPED_TRACE(named.name);
