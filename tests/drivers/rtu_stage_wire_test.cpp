@@ -1,8 +1,11 @@
 // The stage driver over a serial line, against the simulator's, with each fault that its wire knows.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <filesystem>
 #include <future>
 #include <optional>
+#include <thread>
 
 #include "drivers/links/rtu_bus.h"
 #include "drivers/modbus_stage/modbus_halt_line.h"
@@ -132,6 +135,7 @@ TEST_F(RtuStageWire, ComesBackByItselfWhenTheAdapterWasPulledOutForAWhile) {
   Result<StageState> gone = stage->read_state();
   for (int i = 0; i < kTries && gone; ++i) gone = stage->read_state();  // the server's thread may not have begun yet
   server->set_refusing(false);
+  while (!std::filesystem::exists(link)) std::this_thread::yield();  // the server's thread makes it
 
   const auto back = until_it_works([&] { return stage->read_state(); });
 
