@@ -48,7 +48,7 @@ set arrow 1 from ray*sin(theta_i),0,ray*cos(theta_i) to most*0.02*sin(theta_i),0
 set arrow 2 from 0,0,0 to -ray*sin(theta_i),0,ray*cos(theta_i) nohead dt 2 lw 2 lc rgb '#d62728' front
 set arrow 3 from 0,0,0 to 0,0,high nohead dt 3 lw 1 lc rgb '#555555' front
 set label 1 'light, retro' at 1.08*ray*sin(theta_i),0,1.06*ray*cos(theta_i) center tc rgb '#d62728' font ',11' front
-set label 2 'specular' at -1.1*ray*sin(theta_i),0,1.06*ray*cos(theta_i) center tc rgb '#d62728' font ',11' front
+set label 2 'specular' at -1.25*ray*sin(theta_i),0,1.2*ray*cos(theta_i) center tc rgb '#d62728' font ',11' front
 set label 3 '{/Symbol f}_r = 0°' at 0.98*reach,-0.12*reach,0 left tc rgb '#555555' font ',10'
 set label 4 '180°' at -1.05*reach,0,0 right tc rgb '#555555' font ',10'
 set parametric; set urange [0:360]; set vrange [0:1]
