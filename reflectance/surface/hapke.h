@@ -49,8 +49,8 @@ class Hapke {
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const {
     const double mu_i = clamped_mu(i);
     const double mu_r = clamped_mu(r);
-    const double orders = p_.g == 0.0 ? h_product(mu_i, mu_r)
-                                      : phase_(i, r, separation_terms(i, r)) + higher_orders(mu_i, mu_r);
+    const double orders =
+        p_.g == 0.0 ? h_product(mu_i, mu_r) : phase_(i, r, separation_terms(i, r)) + higher_orders(mu_i, mu_r);
     return per_steradian(scale_ * orders / (mu_i + mu_r));
   }
   void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;

@@ -11,7 +11,8 @@ namespace gonio::sim {
 struct WireAddresses {
   std::string stage_host = "127.0.0.1";
   std::uint16_t stage_port = 1502;
-  std::string stage_line;  ///< not empty: the stage is on Modbus RTU behind this path, 8 data bits, no parity, 2 stop bits
+  std::string
+      stage_line;  ///< not empty: the stage is on Modbus RTU behind this path, 8 data bits, no parity, 2 stop bits
   int stage_baud = 115200;
   std::string camera_address = "127.0.7.1";
 };
