@@ -104,7 +104,7 @@ TEST_P(RtuStageWireFault, IsRetriedAndNoMotionStartsTwice) {
 INSTANTIATE_TEST_SUITE_P(OfReplies, RtuStageWireFault,
                          testing::Values(NamedFault{"Lost", {.kind = Kind::Lost}},
                                          NamedFault{"LateByHalfATimeout", {.kind = Kind::Late, .late = 375ms}},
-                                         NamedFault{"LateByTwoTimeouts", {.kind = Kind::Late, .late = 625ms}},
+                                         NamedFault{"LateBeyondTwoTimeouts", {.kind = Kind::Late, .late = 625ms}},
                                          NamedFault{"LateByThreeTimeouts", {.kind = Kind::Late, .late = 1000ms}},
                                          NamedFault{"Torn", {.kind = Kind::Torn}},
                                          NamedFault{"BadCrc", {.kind = Kind::BadCrc}},
