@@ -15,7 +15,8 @@ constexpr int kFirstLevel = 2;
 constexpr int kLastLevel = 6;
 
 // psi in quarters: at grazing axes the horizon bends sharply at psi = +-90 deg, where quarters meet.
-RuleSum at_level(PolarSum sum, bool is_isotropic, int level) {
+RuleSum at_level(const PolarSum& empty, bool is_isotropic, int level) {
+  PolarSum sum = empty;
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   const std::vector<EndNode>& rule = tanh_sinh(level);
   const double sides = is_isotropic ? 2.0 : 1.0;  // psi and -psi see the same

@@ -28,7 +28,8 @@ int azimuths_for(int arc_nodes, double slope) {
 }
 
 // Gauss in the root of what is left of the arc, which tames the powers of mu at the horizon.
-RuleSum rung(PolarSum sum, bool is_isotropic, int arc_nodes, int azimuths) {
+RuleSum rung(const PolarSum& empty, bool is_isotropic, int arc_nodes, int azimuths) {
+  PolarSum sum = empty;
   const UnitRule& rule = gauss_legendre(arc_nodes);
   const int meridians = is_isotropic ? azimuths : 2 * azimuths;  // psi and -psi see the same
   const double weight = 2.0 * std::numbers::pi / meridians;
