@@ -1,5 +1,7 @@
 #include "sim/wires/rtu_frame.h"
 
+#include <algorithm>
+
 namespace gonio::sim {
 
 std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) {
@@ -17,8 +19,8 @@ std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> rtu_frame(std::uint8_t unit, std::span<const std::uint8_t> pdu) {
-  std::vector<std::uint8_t> frame{unit};
-  frame.insert(frame.end(), pdu.begin(), pdu.end());
+  std::vector<std::uint8_t> frame(1 + pdu.size(), unit);
+  std::copy(pdu.begin(), pdu.end(), frame.begin() + 1);
   const std::uint16_t crc = modbus_crc(frame);
   frame.push_back(static_cast<std::uint8_t>(crc));
   frame.push_back(static_cast<std::uint8_t>(crc >> 8U));
