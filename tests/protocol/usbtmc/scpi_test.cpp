@@ -118,13 +118,13 @@ TEST(Scpi, WritesEntriesOfTheErrorQueue) {
 }
 
 TEST(Scpi, ShowsNoControlCharactersAndNoNovelsInItsErrors) {
-  std::string text(500, 'x');
+  std::string text(500, 'a');
   text[3] = '\x1b';
 
   const auto number = parse_number(text);
 
   ASSERT_FALSE(number);
-  EXPECT_EQ(number.error().seen, "\"xxx?" + std::string(36, 'x') + "...\"");
+  EXPECT_EQ(number.error().seen, "\"aaa?" + std::string(36, 'a') + "...\"");
 }
 
 }  // namespace
