@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "daemon/app/daemon_service.h"
+#include "daemon/app/devices.h"
 #include "daemon/app/engine.h"
 #include "daemon/app/log.h"
 #include "daemon/app/options.h"
@@ -19,78 +20,9 @@
 #include "daemon/engine/file_limit.h"
 #include "daemon/http/server.h"
 #include "daemon/store/store_writer.h"
-#include "drivers/genicam_camera/genicam_camera.h"
-#include "drivers/links/aravis_camera_link.h"
-#include "drivers/links/rtu_bus.h"
-#include "drivers/links/tcp_modbus_link.h"
-#include "drivers/modbus_stage/modbus_halt_line.h"
-#include "drivers/modbus_stage/modbus_stage.h"
 
 namespace gonio::daemon {
 namespace {
-
-/// The ways to the stage over its wire. Over TCP two connections; on a serial line, which there is but once, three
-/// ranks.
-class StageLinks {
- public:
-  explicit StageLinks(const Instrument& instrument) {
-    if (instrument.stage_address.serial) {
-      bus_.emplace(drivers::RtuLineConfig{.line = *instrument.stage_address.serial,
-                                          .unit_id = instrument.stage.registers.unit_id,
-                                          .reply_timeout = instrument.stage.reply_timeout});
-    } else {
-      motion_.emplace(modbus(instrument));
-      halt_.emplace(modbus(instrument));
-    }
-  }
-
-  [[nodiscard]] drivers::ModbusLink& motion() { return bus_ ? bus_->normal() : *motion_; }
-  /// STOP waits for nobody's exchange.
-  [[nodiscard]] drivers::ModbusLink& halts() { return bus_ ? bus_->urgent() : *halt_; }
-  [[nodiscard]] drivers::ModbusLink& beats() { return bus_ ? bus_->prompt() : *halt_; }
-
- private:
-  static drivers::TcpModbusConfig modbus(const Instrument& instrument) {
-    return {.address = instrument.stage_address.host,
-            .port = instrument.stage_address.port,
-            .unit_id = instrument.stage.registers.unit_id,
-            .reply_timeout = instrument.stage.reply_timeout,
-            .connect_timeout = instrument.stage.reply_timeout};
-  }
-
-  std::optional<drivers::RtuBus> bus_;
-  std::optional<drivers::TcpModbusLink> motion_;
-  std::optional<drivers::TcpModbusLink> halt_;
-};
-
-/// The links and drivers of the instrument. Nothing is connected before the first call.
-class Devices {
- public:
-  Devices(const Instrument& instrument, const Clock& clock)
-      : stage_links_(instrument),
-        camera_link_({.address = instrument.detector.address}),
-        stage_(stage_links_.motion(), instrument.stage, clock),
-        halt_line_(stage_links_.halts(), stage_links_.beats(), instrument.stage.registers),
-        camera_(camera_link_, camera(instrument.detector), clock) {}
-
-  [[nodiscard]] EngineDevices all() { return {.stage = stage_, .detector = camera_, .halt_line = halt_line_}; }
-
- private:
-  static drivers::GenicamCameraConfig camera(const DetectorConfig& detector) {
-    return {.serial = detector.serial,
-            .format = {.width = detector.width_px,
-                       .height = detector.height_px,
-                       .pixel_format = detector.pixel_format,
-                       .packet_size_bytes = detector.packet_size_bytes},
-            .settings = {.exposure = detector.shortest_exposure, .gain_db = detector.gain_db}};
-  }
-
-  StageLinks stage_links_;
-  drivers::AravisCameraLink camera_link_;
-  drivers::ModbusStage stage_;
-  drivers::ModbusHaltLine halt_line_;
-  drivers::GenicamCamera camera_;
-};
 
 /// Events go out once there is a server; those committed before are fetched from the store by whoever asks.
 class Publisher {

@@ -1,0 +1,85 @@
+#include "daemon/app/devices.h"
+
+#include <optional>
+
+#include "drivers/genicam_camera/genicam_camera.h"
+#include "drivers/links/aravis_camera_link.h"
+#include "drivers/links/rtu_bus.h"
+#include "drivers/links/tcp_modbus_link.h"
+#include "drivers/modbus_stage/modbus_halt_line.h"
+#include "drivers/modbus_stage/modbus_stage.h"
+
+namespace gonio::daemon {
+namespace {
+
+/// The ways to the stage over its wire. Over TCP two connections; on a serial line, which there is but once, three
+/// ranks.
+class StageLinks {
+ public:
+  explicit StageLinks(const Instrument& instrument) {
+    if (instrument.stage_address.serial) {
+      bus_.emplace(drivers::RtuLineConfig{.line = *instrument.stage_address.serial,
+                                          .unit_id = instrument.stage.registers.unit_id,
+                                          .reply_timeout = instrument.stage.reply_timeout});
+    } else {
+      motion_.emplace(modbus(instrument));
+      halt_.emplace(modbus(instrument));
+    }
+  }
+
+  [[nodiscard]] drivers::ModbusLink& motion() { return bus_ ? bus_->normal() : *motion_; }
+  /// STOP waits for nobody's exchange.
+  [[nodiscard]] drivers::ModbusLink& halts() { return bus_ ? bus_->urgent() : *halt_; }
+  [[nodiscard]] drivers::ModbusLink& beats() { return bus_ ? bus_->prompt() : *halt_; }
+
+ private:
+  static drivers::TcpModbusConfig modbus(const Instrument& instrument) {
+    return {.address = instrument.stage_address.host,
+            .port = instrument.stage_address.port,
+            .unit_id = instrument.stage.registers.unit_id,
+            .reply_timeout = instrument.stage.reply_timeout,
+            .connect_timeout = instrument.stage.reply_timeout};
+  }
+
+  std::optional<drivers::RtuBus> bus_;
+  std::optional<drivers::TcpModbusLink> motion_;
+  std::optional<drivers::TcpModbusLink> halt_;
+};
+
+drivers::GenicamCameraConfig camera_of(const DetectorConfig& detector) {
+  return {.serial = detector.serial,
+          .format = {.width = detector.width_px,
+                     .height = detector.height_px,
+                     .pixel_format = detector.pixel_format,
+                     .packet_size_bytes = detector.packet_size_bytes},
+          .settings = {.exposure = detector.shortest_exposure, .gain_db = detector.gain_db}};
+}
+
+}  // namespace
+
+struct Devices::Impl {
+  Impl(const Instrument& of, const Clock& clock)
+      : instrument(of),
+        stage_links(instrument),
+        camera_link({.address = instrument.detector.address}),
+        stage(stage_links.motion(), instrument.stage, clock),
+        halt_line(stage_links.halts(), stage_links.beats(), instrument.stage.registers),
+        camera(camera_link, camera_of(instrument.detector), clock) {}
+
+  const Instrument instrument;
+  StageLinks stage_links;
+  drivers::AravisCameraLink camera_link;
+  drivers::ModbusStage stage;
+  drivers::ModbusHaltLine halt_line;
+  drivers::GenicamCamera camera;
+};
+
+Devices::Devices(const Instrument& instrument, const Clock& clock) : impl_(std::make_unique<Impl>(instrument, clock)) {}
+
+Devices::~Devices() = default;
+
+EngineDevices Devices::all() {
+  return {.stage = impl_->stage, .detector = impl_->camera, .halt_line = impl_->halt_line};
+}
+
+}  // namespace gonio::daemon
