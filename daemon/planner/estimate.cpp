@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
+#include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/planner.h"
 #include "drivers/motion/travel_time.h"
 
@@ -24,11 +26,14 @@ class Walk {
       const auto& config = instrument.stage.axis(axis);
       standing_[stage::index_of(axis)] = std::clamp(0.0, config.low, config.high);
     }
-    const double longest = std::min(in_seconds(instrument.detector.longest_exposure), in_seconds(plan.max_time));
-    const double shortest = in_seconds(instrument.detector.shortest_exposure);
-    exposure_ = seconds(std::sqrt(shortest * std::max(shortest, longest)));
-    dark_exposures_ = seconds(2.0 * std::max(shortest, longest));  // a ladder by twos adds up to twice its longest
-    rungs_ = 1 + static_cast<int>(std::log2(std::max(1.0, longest / shortest)));
+    const std::vector<Duration> ladder = exposure_ladder(instrument.detector, plan.max_time);
+    exposure_ = seconds(std::sqrt(in_seconds(ladder.front()) * in_seconds(ladder.back())));
+    if (!plan.exposures.empty()) {
+      exposure_ = std::accumulate(plan.exposures.begin(), plan.exposures.end(), Duration{});
+      frames_ = static_cast<int>(plan.exposures.size());
+    }
+    dark_exposures_ = std::accumulate(ladder.begin(), ladder.end(), Duration{});
+    rungs_ = static_cast<int>(ladder.size());
     visit_dark();
   }
 
@@ -40,7 +45,7 @@ class Walk {
     time_.move += step.move;
     time_.settle += step.settle;
     time_.expose += exposure_;
-    time_.read += kReadTime;
+    time_.read += frames_ * kReadTime;
     for (std::size_t a = 0; a < stage::kAxisCount; ++a) standing_[a] = (*target)[a].value_or(standing_[a]);
     if (plan_.dark_every > Duration::zero() && time_.total() - last_dark_ >= plan_.dark_every) visit_dark();
   }
@@ -60,6 +65,7 @@ class Walk {
   Duration exposure_{};
   Duration dark_exposures_{};
   int rungs_ = 1;
+  int frames_ = 1;  // of an item
   TimeParts time_;
   Duration last_dark_{};
 };

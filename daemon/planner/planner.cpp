@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/planner/estimate.h"
+#include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/measuring_order.h"
 
 namespace gonio::daemon {
@@ -158,6 +159,7 @@ class Expansion {
 }  // namespace
 
 Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument) {
+  GONIO_TRY(rungs_of(plan.exposures, exposure_ladder(instrument.detector, plan.max_time)));
   return Expansion(plan, instrument).run();
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "daemon/planner/exposure_ladder.h"
 
 namespace gonio::daemon {
 
@@ -25,12 +28,9 @@ ExposureChooser::ExposureChooser(const Instrument& instrument, const ScanPolicy&
       read_noise_dn_(instrument.model.detector.read_noise_dn),
       full_scale_dn_(instrument.model.detector.full_scale_dn),
       frame_time_(kFrameTimeAtFirst) {
-  const Duration longest = std::min(instrument.detector.longest_exposure, policy.max_time);
-  Duration exposure = instrument.detector.shortest_exposure;
-  do {
-    rungs_.push_back(exposure);
-    exposure *= 2;
-  } while (exposure <= longest);
+  rungs_ = exposure_ladder(instrument.detector, policy.max_time);
+  // The planner has checked them; a scan resumes under the same configuration only.
+  if (auto stated = rungs_of(policy.exposures, rungs_)) stated_ = std::move(*stated);
   dark_dn_.assign(rungs_.size(), 0.0);
 }
 

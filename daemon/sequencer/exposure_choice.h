@@ -30,6 +30,8 @@ class ExposureChooser {
 
   /// shortest * 2^n, up to the longest that the detector and the plan's max_time allow; never empty.
   [[nodiscard]] const std::vector<Duration>& rungs() const { return rungs_; }
+  /// The rungs that the plan states, ascending: every reading uses them, as far as they do not saturate. Empty: chosen.
+  [[nodiscard]] const std::vector<std::size_t>& stated() const { return stated_; }
 
   /// Signal (DN above dark) per second of exposure, as the mean in the aperture.
   struct Signal {
@@ -40,6 +42,8 @@ class ExposureChooser {
   [[nodiscard]] ExposurePlan choose(const Signal& signal, std::size_t ceiling) const;
   /// How many frames on `rung` reach the plan's signal-to-noise: bounded by the plan's time and the instrument.
   [[nodiscard]] int frames_needed(std::size_t rung, const Signal& signal) const;
+  /// The plan's, of all exposures of a reading.
+  [[nodiscard]] Duration max_time() const { return max_time_; }
   [[nodiscard]] bool reaches(std::size_t rung, const Signal& signal) const;
   /// The time of a plan, frame transfer included.
   [[nodiscard]] Duration cost(const ExposurePlan& plan) const;
@@ -58,6 +62,7 @@ class ExposureChooser {
   [[nodiscard]] int frames_allowed(std::size_t rung) const;
 
   std::vector<Duration> rungs_;
+  std::vector<std::size_t> stated_;
   std::vector<double> dark_dn_;
   std::map<std::pair<calibration::Target, int>, Signal> last_;
   double target_snr_;

@@ -1,5 +1,7 @@
 #include "daemon/sequencer/measurement.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 namespace gonio::daemon {
@@ -16,7 +18,8 @@ Measurement Measurement::of_item(const ExposureChooser& chooser, calibration::Ta
   Measurement item;
   item.target_ = target;
   item.filter_ = filter;
-  item.rung_ = chooser.first_plan(target, filter).rung;
+  item.stated_ = chooser.stated();
+  item.rung_ = item.stated_.empty() ? chooser.first_plan(target, filter).rung : item.stated_.front();
   item.ceiling_ = chooser.rungs().size() - 1;
   return item;
 }
@@ -33,7 +36,9 @@ Measurement Measurement::of_dark(std::size_t lowest, std::size_t highest, int fr
 Measurement::Verdict Measurement::add(ReadingRecord reading, ExposureChooser& chooser) {
   const calibration::RegionMoments region = reading.region;
   readings_.push_back(std::move(reading));
+  rung_of_reading_.push_back(rung_);
   if (is_dark_) return add_dark(region.mean, chooser);
+  if (!stated_.empty()) return add_stated(region, chooser);
   if (region.saturated > 0) return add_saturated();
   ++on_rung_;
   sum_dn_ += region.mean;
@@ -78,6 +83,60 @@ Measurement::Verdict Measurement::add_lit(std::uint32_t pixels, ExposureChooser&
   if (on_rung_ < needed) return Verdict::More;
   chooser.remember(target_, filter_, signal);
   return Verdict::Done;
+}
+
+Measurement::Verdict Measurement::add_stated(const calibration::RegionMoments& region, ExposureChooser& chooser) {
+  if (region.saturated > 0) return drop_stated_rung(chooser);
+  ++on_rung_;
+  sum_dn_ += region.mean;
+  tried_ = std::max<std::size_t>(tried_, 1);
+  if (rung_ == stated_[tried_ - 1] && tried_ < stated_.size()) {
+    return_to(stated_[tried_++]);
+    return Verdict::More;
+  }
+  return repeat_longest(region.n, chooser);
+}
+
+// A rung counts whole or not at all: to keep just those frames that noise left below full scale would bias the mean.
+Measurement::Verdict Measurement::drop_stated_rung(ExposureChooser& chooser) {
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    if (rung_of_reading_[k] == rung_) readings_[k].used = false;
+  }
+  stated_.erase(std::ranges::find(stated_, rung_), stated_.end());
+  if (stated_.empty()) return Verdict::Saturated;
+  tried_ = stated_.size();
+  return_to(stated_.back());
+  return repeat_longest(readings_.back().region.n, chooser);
+}
+
+Measurement::Verdict Measurement::repeat_longest(std::uint32_t pixels, ExposureChooser& chooser) {
+  const ExposureChooser::Signal signal{(mean_dn() - chooser.dark_dn(rung_)) / in_seconds(chooser.rungs()[rung_]),
+                                       pixels};
+  Duration spent{};
+  for (const std::size_t rung : rung_of_reading_) spent += chooser.rungs()[rung];
+  const bool is_in_time = spent + chooser.rungs()[rung_] <= chooser.max_time();
+  if (is_in_time && on_rung_ < chooser.frames_needed(rung_, signal)) return Verdict::More;
+  return Verdict::Done;
+}
+
+std::vector<std::size_t> Measurement::used_rungs() const {
+  std::set<std::size_t> rungs;
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    if (readings_[k].used) rungs.insert(rung_of_reading_[k]);
+  }
+  return {rungs.begin(), rungs.end()};
+}
+
+// Its frames so far count on.
+void Measurement::return_to(std::size_t rung) {
+  rung_ = rung;
+  on_rung_ = 0;
+  sum_dn_ = 0.0;
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    if (rung_of_reading_[k] != rung || !readings_[k].used) continue;
+    ++on_rung_;
+    sum_dn_ += readings_[k].region.mean;
+  }
 }
 
 void Measurement::change_rung(std::size_t rung) {

@@ -15,7 +15,8 @@ class Measurement {
   enum class Verdict : std::uint8_t { More, Done, Saturated };
 
   /// Frames of a target until the plan's signal-to-noise is reached: a probe if nothing is known, a lower rung after
-  /// saturation.
+  /// saturation. Where the plan states exposures: one frame of each, the shortest first, up to the first that saturates
+  /// (no frame of that rung counts), then more of the longest that does not.
   [[nodiscard]] static Measurement of_item(const ExposureChooser& chooser, calibration::Target target, int filter);
   /// `frames` of each rung from `lowest` to `highest`.
   [[nodiscard]] static Measurement of_dark(std::size_t lowest, std::size_t highest, int frames);
@@ -25,6 +26,8 @@ class Measurement {
   [[nodiscard]] Verdict add(ReadingRecord reading, ExposureChooser& chooser);
   /// All frames so far, probes and saturated ones among them (not `used`).
   [[nodiscard]] const std::vector<ReadingRecord>& readings() const { return readings_; }
+  /// The rungs of those that count, each once, ascending.
+  [[nodiscard]] std::vector<std::size_t> used_rungs() const;
   /// How many of them count, on the last rung.
   [[nodiscard]] int used_frames() const { return on_rung_; }
   /// Their mean in the aperture.
@@ -34,7 +37,11 @@ class Measurement {
   Verdict add_dark(double mean_dn, ExposureChooser& chooser);
   Verdict add_saturated();
   Verdict add_lit(std::uint32_t pixels, ExposureChooser& chooser);
+  Verdict add_stated(const calibration::RegionMoments& region, ExposureChooser& chooser);
+  Verdict drop_stated_rung(ExposureChooser& chooser);
+  Verdict repeat_longest(std::uint32_t pixels, ExposureChooser& chooser);
   void change_rung(std::size_t rung);
+  void return_to(std::size_t rung);
 
   bool is_dark_ = false;
   calibration::Target target_ = calibration::Target::Dark;
@@ -45,7 +52,10 @@ class Measurement {
   int changes_ = 0;
   int on_rung_ = 0;
   double sum_dn_ = 0.0;
+  std::vector<std::size_t> stated_;  ///< by the plan, as far as they do not saturate
+  std::size_t tried_ = 0;            ///< of them, how many have a frame
   std::vector<ReadingRecord> readings_;
+  std::vector<std::size_t> rung_of_reading_;
 };
 
 }  // namespace gonio::daemon

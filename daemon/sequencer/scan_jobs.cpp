@@ -176,7 +176,7 @@ void Sequencer::Impl::join_exposure(Instant now) {
   if (verdict == Measurement::Verdict::Saturated) {
     return job_failed(Error{.code = ErrorCode::Saturated,
                             .device = "detector",
-                            .tried = fmt::format("expose for {:.6f} s, the shortest", in_seconds(exposure)),
+                            .tried = fmt::format("expose for {:.6f} s, the shortest there is", in_seconds(exposure)),
                             .seen = fmt::format("{} pixels of the aperture at full scale", job.frame->region.saturated),
                             .limit = "none"},
                       now);
@@ -218,7 +218,7 @@ void Sequencer::Impl::accept_job(Instant now) {
 
 void Sequencer::Impl::accept_item(Job& job, Instant now) {
   const NewAttempt attempt = attempt_of(job, AttemptOutcome::Accepted, now);
-  scan->note_rung(job.measurement->rung());
+  for (const std::size_t rung : job.measurement->used_rungs()) scan->note_rung(rung);
   scan->most_frames = std::max(scan->most_frames, job.measurement->used_frames());
   scan->items.accept(job.item, now);
   scan->failures.erase(job.item);

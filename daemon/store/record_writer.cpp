@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/config/configuration_hash.h"
+#include "daemon/store/exposure_list.h"
 #include "daemon/store/policy_names.h"
 
 namespace gonio::daemon {
@@ -64,16 +65,18 @@ void RecordWriter::operator()(const NewScan& scan) {
   const std::int64_t instrument = id_of_instrument(scan);
   Statement& insert = database_.statement(
       "INSERT INTO scan(idempotency_key, name, campaign_id, sample_id, isotropic, reference_id, instrument_id, "
-      "configuration_hash, plan_text, plan_file, plan_sha256, planner_version, target_snr, max_time_ns, block_ns, "
+      "configuration_hash, plan_text, plan_file, plan_sha256, planner_version, target_snr, max_time_ns, exposures_ns, "
+      "block_ns, "
       "dark_every_ns, item_retries, on_item_error, on_restart, asked, merged, blocked, items, state, finish_asked, "
       "outcome, who, run_id, submitted_utc_ns, submitted_boottime_ns, changed_utc_ns) "
-      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
+      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
   scan.idempotency_key.empty() ? insert.bind_null() : insert.bind(scan.idempotency_key);
   insert.bind(scan.name);
   campaign == 0 ? insert.bind_null() : insert.bind(campaign);
   insert.bind(sample).bind(scan.isotropic).bind(reference).bind(instrument).bind(scan.instrument_hash);
   insert.bind(scan.plan_text).bind(scan.plan_file).bind(sha256_hex(scan.plan_text)).bind(scan.planned.planner_version);
-  insert.bind(scan.policy.target_snr).bind(scan.policy.max_time.count()).bind(scan.policy.block.count());
+  insert.bind(scan.policy.target_snr).bind(scan.policy.max_time.count());
+  insert.bind(exposure_list_text(scan.policy.exposures)).bind(scan.policy.block.count());
   insert.bind(scan.policy.dark_every.count()).bind(scan.policy.item_retries);
   insert.bind(kOnItemErrorNames[static_cast<std::size_t>(scan.policy.on_item_error)]);
   insert.bind(kOnRestartNames[static_cast<std::size_t>(scan.policy.on_restart)]);

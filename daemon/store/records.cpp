@@ -47,6 +47,7 @@ std::optional<Target> target_from_name(std::string_view name) {
 ScanPolicy policy_of(const api::Plan& plan) {
   return ScanPolicy{.target_snr = plan.target_snr,
                     .max_time = plan.max_time,
+                    .exposures = plan.exposures,
                     .block = plan.block,
                     .dark_every = plan.dark_every,
                     .item_retries = plan.item_retries,

@@ -92,6 +92,7 @@ struct ReadingRecord {
 struct ScanPolicy {
   double target_snr = 300.0;
   Duration max_time{};
+  std::vector<Duration> exposures{};  ///< ascending; empty: chosen for each reading
   Duration block{};
   Duration dark_every{};
   int item_retries = 2;

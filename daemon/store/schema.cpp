@@ -244,7 +244,12 @@ CREATE TABLE audit(
 ) STRICT;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1};
+// Version 2: exposures that a plan states, as exposure_list.h writes them.
+constexpr const char* kVersion2 = R"sql(
+ALTER TABLE scan ADD COLUMN exposures_ns TEXT NOT NULL DEFAULT '';
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

@@ -245,7 +245,8 @@ class SqliteStoreReader final : public StoreReader {
             ->statement(
                 "SELECT s.scan_id, s.name, coalesce(c.name, ''), p.name, isotropic, state, outcome, who, serial, "
                 "configuration_hash, submitted_utc_ns, changed_utc_ns, merged, blocked, items, target_snr, "
-                "max_time_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan s "
+                "max_time_ns, exposures_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan "
+                "s "
                 "JOIN sample p USING (sample_id) JOIN reference_standard USING (reference_id) "
                 "LEFT JOIN campaign c USING (campaign_id) WHERE s.scan_id = ?")
             .bind(id);

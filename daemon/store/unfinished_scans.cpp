@@ -4,6 +4,7 @@
 #include <limits>
 #include <string_view>
 
+#include "daemon/store/exposure_list.h"
 #include "daemon/store/policy_names.h"
 
 namespace gonio::daemon {
@@ -74,11 +75,12 @@ void complete(Database& database, UnfinishedScan& scan, Instant now, UtcTime utc
 ScanPolicy policy_from_row(const Statement& row, int first) {
   return ScanPolicy{.target_snr = row.real(first),
                     .max_time = Duration(row.integer(first + 1)),
-                    .block = Duration(row.integer(first + 2)),
-                    .dark_every = Duration(row.integer(first + 3)),
-                    .item_retries = static_cast<int>(row.integer(first + 4)),
-                    .on_item_error = enum_at<api::OnItemError>(kOnItemErrorNames, row.text(first + 5)),
-                    .on_restart = enum_at<api::OnRestart>(kOnRestartNames, row.text(first + 6))};
+                    .exposures = exposure_list_from(row.text(first + 2)),
+                    .block = Duration(row.integer(first + 3)),
+                    .dark_every = Duration(row.integer(first + 4)),
+                    .item_retries = static_cast<int>(row.integer(first + 5)),
+                    .on_item_error = enum_at<api::OnItemError>(kOnItemErrorNames, row.text(first + 6)),
+                    .on_restart = enum_at<api::OnRestart>(kOnRestartNames, row.text(first + 7))};
 }
 
 std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t after, std::int64_t at_most) {
@@ -141,6 +143,7 @@ std::vector<UnfinishedScan> read_unfinished(Database& database, Instant now, Utc
   std::vector<UnfinishedScan> scans;
   Statement& query = database.statement(
       "SELECT scan_id, state, finish_asked, name, isotropic, configuration_hash, merged, target_snr, max_time_ns, "
+      "exposures_ns, "
       "block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan "
       "WHERE state NOT IN ('done', 'finished-early', 'aborted', 'failed') ORDER BY scan_id");
   while (query.next()) {

@@ -19,8 +19,8 @@ namespace gonio::daemon {
 [[nodiscard]] std::vector<Hold> read_holds(Database& database, ScanId scan, Instant now, UtcTime utc_now);
 /// The sum over all attempts and visits.
 [[nodiscard]] TimeParts read_time_spent(Database& database, ScanId scan);
-/// The policy in columns `first` and after: target_snr, max_time_ns, block_ns, dark_every_ns, item_retries,
-/// on_item_error, on_restart.
+/// The policy in columns `first` and after: target_snr, max_time_ns, exposures_ns, block_ns, dark_every_ns,
+/// item_retries, on_item_error, on_restart.
 [[nodiscard]] ScanPolicy policy_from_row(const Statement& row, int first);
 
 }  // namespace gonio::daemon

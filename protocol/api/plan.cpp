@@ -100,6 +100,30 @@ void read_geometry(TomlReader geometry, Plan& plan) {
   }
 }
 
+// A number or a list of them: what each reading is exposed for. All of them must fit into the time of a reading.
+std::vector<Duration> read_exposures(TomlReader& reading, Duration max_time) {
+  constexpr std::string_view kKey = "exposure_s";
+  const TomlKind kind = reading.kind(kKey);
+  if (kind == TomlKind::Absent) return {};
+  const NumberRange range{.least = 1e-6, .most = 3600.0, .unit = "s"};
+  std::vector<double> values =
+      kind == TomlKind::Array ? reading.numbers(kKey, range) : std::vector<double>{reading.number(kKey, range)};
+  if (reading.has_failed()) return {};
+  refuse_repetition(reading, kKey, values, range.unit);
+  std::ranges::sort(values);
+  std::vector<Duration> exposures;
+  double sum = 0.0;
+  for (const double value : values) {
+    exposures.push_back(seconds(value));
+    sum += value;
+  }
+  if (sum > in_seconds(max_time)) {
+    reading.fail(kKey, ErrorCode::InvalidInput, fmt::format("{} s in all", without_creep(sum)),
+                 fmt::format("at most max_time_s = {} s", in_seconds(max_time)));
+  }
+  return exposures;
+}
+
 void read_reading(TomlReader& root, Plan& plan) {
   constexpr double kMaxTime = 4.0;
   plan.max_time = seconds(kMaxTime);
@@ -107,6 +131,7 @@ void read_reading(TomlReader& root, Plan& plan) {
   if (!table) return;
   plan.target_snr = table->number_or("target_snr", plan.target_snr, {.least = 1.0, .most = 1e6});
   plan.max_time = seconds(table->number_or("max_time_s", kMaxTime, {.least = 1e-4, .most = 3600.0, .unit = "s"}));
+  plan.exposures = read_exposures(*table, plan.max_time);
 }
 
 void read_reference(TomlReader table, Plan& plan) {

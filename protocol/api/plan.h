@@ -28,9 +28,10 @@ struct Plan {
   std::vector<Angle> theta_r;
   std::vector<Angle> phi_r;
   std::vector<Wavelength> wavelengths;
-  double target_snr = 300.0;       ///< of one reading
-  Duration max_time{};             ///< of one reading, exposure times frames
-  std::string reference_standard;  ///< serial number
+  double target_snr = 300.0;        ///< of one reading
+  Duration max_time{};              ///< of one reading, exposure times frames
+  std::vector<Duration> exposures;  ///< [reading] exposure_s, ascending: one is fixed, several bracket; empty: chosen
+  std::string reference_standard;   ///< serial number
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
   Duration block{};       ///< sample items and their reference partners lie within this time
   Duration dark_every{};  ///< visits

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "daemon/planner/exposure_ladder.h"
 #include "daemon/sequencer/measurement.h"
 #include "tests/daemon/support/scan_records.h"
 
@@ -140,6 +143,127 @@ TEST(Measurement, EveryLightEndsWithinABoundedNumberOfExposures) {
     light.shine_on(item, chooser);
     EXPECT_NE(light.verdict, Measurement::Verdict::More) << rate;
     EXPECT_LE(light.exposures, 16 + 12) << rate;
+  }
+}
+
+ScanPolicy bracketed(std::vector<Duration> exposures, double snr, Duration max_time = std::chrono::seconds(1)) {
+  return ScanPolicy{.target_snr = snr, .max_time = max_time, .exposures = std::move(exposures)};
+}
+
+ExposureChooser stated_chooser(const ScanPolicy& policy) {
+  ExposureChooser chooser(test::bench_instrument(), policy);
+  for (std::size_t rung = 0; rung < chooser.rungs().size(); ++rung) chooser.learn_dark(rung, 100.0);
+  return chooser;
+}
+
+int used_readings(const Measurement& item) {
+  return static_cast<int>(std::ranges::count_if(item.readings(), [](const ReadingRecord& r) { return r.used; }));
+}
+
+TEST(StatedExposures, EachIsUsedOnceAndTheLongestUntilTheSignalToNoiseIsReached) {
+  ExposureChooser chooser = stated_chooser(bracketed({milliseconds(1), milliseconds(8), milliseconds(32)}, 300));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  Light light{10'000.0};
+
+  light.shine_on(item, chooser);
+
+  // By hand, 32 ms: 320 DN of 450 pixels; variance (320/4 + 4.5) / 450 = 0.1878: one frame has 738, more than 300.
+  EXPECT_EQ(light.verdict, Measurement::Verdict::Done);
+  EXPECT_EQ(item.used_rungs(), (std::vector<std::size_t>{0, 3, 5}));
+  EXPECT_EQ(light.exposures, 3);
+  EXPECT_EQ(used_readings(item), 3);
+}
+
+TEST(StatedExposures, ABrightPeakKeepsTheShortOnesAndNoFrameOfARungThatSaturated) {
+  ExposureChooser chooser = stated_chooser(bracketed({milliseconds(1), milliseconds(8), milliseconds(32)}, 4000));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  Light light{400'000.0};  // 8 ms: 3300 DN; 32 ms: beyond full scale
+
+  light.shine_on(item, chooser);
+
+  EXPECT_EQ(light.verdict, Measurement::Verdict::Done);
+  EXPECT_EQ(item.used_rungs(), (std::vector<std::size_t>{0, 3}));
+  for (const ReadingRecord& reading : item.readings()) EXPECT_NE(reading.used, reading.region.saturated > 0);
+  EXPECT_GT(item.used_frames(), 1) << "what is left of the target is made up by more frames";
+}
+
+TEST(StatedExposures, ARungThatSaturatesOnlyNowAndThenIsLeftOutWhole) {
+  ExposureChooser chooser = stated_chooser(bracketed({milliseconds(1), milliseconds(8)}, 1e5));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  auto verdict = item.add(test::reading_of(500.0, Instant{}, milliseconds(1)), chooser);
+  verdict = item.add(test::reading_of(3300.0, Instant{}, milliseconds(8)), chooser);
+  ASSERT_EQ(verdict, Measurement::Verdict::More);
+
+  ReadingRecord bright = test::reading_of(3301.0, Instant{}, milliseconds(8));
+  bright.region.saturated = 1;
+  (void)item.add(bright, chooser);
+
+  EXPECT_EQ(item.used_rungs(), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(item.rung(), 0U);
+  EXPECT_EQ(used_readings(item), 1);
+}
+
+TEST(StatedExposures, TheTimeOfAReadingBoundsTheRepeats) {
+  ExposureChooser chooser = stated_chooser(bracketed({milliseconds(16), milliseconds(32)}, 1e6, milliseconds(150)));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  Light light{10'000.0};
+
+  light.shine_on(item, chooser);
+
+  EXPECT_EQ(light.exposures, 5) << "16 ms + 4 * 32 ms = 144 ms of 150";
+  EXPECT_EQ(light.verdict, Measurement::Verdict::Done);
+}
+
+TEST(StatedExposures, OfOneThatSaturatesTheItemSaysSo) {
+  ExposureChooser chooser = stated_chooser(bracketed({milliseconds(32)}, 300));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  Light light{400'000.0};
+
+  light.shine_on(item, chooser);
+
+  EXPECT_EQ(light.verdict, Measurement::Verdict::Saturated);
+  EXPECT_EQ(light.exposures, 1);
+  EXPECT_TRUE(item.used_rungs().empty());
+}
+
+TEST(ExposureLadder, RefusesAStatedExposureThatIsNoneOfTheDetectorsAndNamesThoseBesideIt) {
+  const std::vector<Duration> ladder = exposure_ladder(test::bench_instrument().detector, std::chrono::seconds(1));
+
+  const auto between = rungs_of({milliseconds(6)}, ladder);
+  const auto beyond = rungs_of({std::chrono::seconds(1)}, ladder);
+  const auto rounded = rungs_of({std::chrono::microseconds(8'030)}, ladder);
+
+  ASSERT_FALSE(between);
+  EXPECT_EQ(between.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(between.error().seen, "0.006 s");
+  EXPECT_EQ(between.error().limit, "0.004 s or 0.008 s");
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().limit, "0.064 s or shorter");
+  ASSERT_TRUE(rounded);
+  EXPECT_EQ(rounded->front(), 3U);
+}
+
+// A peak a thousand times as bright as its flank, with a dark hole: no chosen exposure may use a saturated frame, and
+// each reaches the target where the light allows it.
+TEST(ExposureChooser, AcrossAPeakAndItsFlanksNoSaturatedFrameCounts) {
+  ExposureChooser chooser = chooser_with_dark(300);
+  for (const double rate : {2e3, 2e6, 2e3, 3e5, 50.0, 2e6, 3e5, 2e3}) {
+    SCOPED_TRACE(rate);
+    Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+    Light light{rate};
+
+    light.shine_on(item, chooser);
+
+    ASSERT_EQ(light.verdict, Measurement::Verdict::Done);
+    EXPECT_LE(light.exposures, 40);
+    double electrons = 0.0;
+    for (const ReadingRecord& reading : item.readings()) {
+      if (!reading.used) continue;
+      EXPECT_EQ(reading.region.saturated, 0U);
+      electrons += (reading.region.mean - 100.0) * 4.0 * reading.region.n;
+    }
+    if (rate < 1e3) continue;  // a hole too dark for the time of a reading
+    EXPECT_GE(std::sqrt(electrons), 300.0) << "shot noise alone allows the target";
   }
 }
 

@@ -91,6 +91,21 @@ TEST_F(Store, AScanComesBackWithItsPointsTextsAndPolicy) {
   EXPECT_EQ(reader->points(id, 0, 10)->size(), 1U);
 }
 
+TEST_F(Store, StatedExposuresComeBackWithTheScanAndAfterARestart) {
+  api::Plan plan = bench_plan({30}, {10}, {90});
+  plan.exposures = {std::chrono::milliseconds(1), std::chrono::milliseconds(32)};
+  const auto receipt = commit({new_scan(plan)});
+  ASSERT_TRUE(receipt) << describe(receipt.error());
+
+  const auto info = open_reader()->scan(receipt->new_scan);
+  const auto unfinished = writer_->unfinished();
+
+  ASSERT_TRUE(info && unfinished);
+  EXPECT_EQ(info->policy.exposures, plan.exposures);
+  ASSERT_EQ(unfinished->size(), 1U);
+  EXPECT_EQ(unfinished->front().policy, policy_of(plan));
+}
+
 TEST_F(Store, Sha256IsThatOfFips180) {
   EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }

@@ -111,6 +111,35 @@ TEST(Plan, AMisspeltKeyIsNamedWithItsLineAndTheNearestName) {
   EXPECT_THAT(extra.limit, HasSubstr("max_time_s"));
 }
 
+TEST(Plan, ExposuresAreChosenUnlessOneOrSeveralAreStated) {
+  const auto chosen = parse_plan(kWheat, "wheat.toml");
+  const auto fixed = parse_plan(with("max_time_s = 4", "max_time_s = 4\nexposure_s = 0.016"), "wheat.toml");
+  const auto bracket =
+      parse_plan(with("max_time_s = 4", "max_time_s = 4\nexposure_s = [0.5, 0.002, 0.03]"), "wheat.toml");
+
+  ASSERT_TRUE(chosen && fixed && bracket);
+  EXPECT_TRUE(chosen->exposures.empty());
+  EXPECT_EQ(fixed->exposures, std::vector<Duration>{std::chrono::milliseconds(16)});
+  EXPECT_EQ(bracket->exposures, (std::vector<Duration>{std::chrono::milliseconds(2), std::chrono::milliseconds(30),
+                                                       std::chrono::milliseconds(500)}));
+}
+
+TEST(Plan, StatedExposuresThatDoNotFitIntoTheTimeOfAReadingNameTheirSum) {
+  const Error error = error_of(with("max_time_s = 4", "max_time_s = 4\nexposure_s = [2.5, 1.75]"));
+
+  EXPECT_EQ(error.code, ErrorCode::InvalidInput);
+  EXPECT_EQ(error.where->field, "reading.exposure_s");
+  EXPECT_EQ(error.seen, "4.25 s in all");
+  EXPECT_EQ(error.limit, "at most max_time_s = 4 s");
+}
+
+TEST(Plan, AnExposureThatStandsTwiceIsRefused) {
+  const Error error = error_of(with("max_time_s = 4", "max_time_s = 4\nexposure_s = [0.5, 0.5]"));
+
+  EXPECT_EQ(error.code, ErrorCode::InvalidInput);
+  EXPECT_THAT(error.seen, HasSubstr("twice"));
+}
+
 TEST(Plan, AnAngleInAnotherUnitIsAnUnknownKey) {
   const Error error = error_of(with("theta_i_deg = [0, 30, 60]", "theta_i_deg = [0]\ntheta_i_rad = [0, 0.5]"));
 

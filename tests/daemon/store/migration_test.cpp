@@ -1,0 +1,62 @@
+// Files that earlier versions wrote: opened, brought forward, and their scans gone on with.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "daemon/store/schema.h"
+#include "daemon/store/store_reader.h"
+#include "daemon/store/store_writer.h"
+#include "tests/daemon/support/scan_records.h"
+
+namespace gonio::daemon {
+namespace {
+
+class OldStore : public testing::Test {
+ protected:
+  void write(const std::string& name) {
+    std::ifstream in(std::string(GONIO_OLD_STORES "/") + name);
+    const std::string sql((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    ASSERT_FALSE(sql.empty()) << name;
+    SQLite::Database file(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    file.exec(sql);
+  }
+
+  test::ScratchFolder folder_;
+  std::string path_ = folder_.file("old.sqlite");
+  ManualClock clock_;
+};
+
+TEST_F(OldStore, OfVersion1IsRefusedToReadersUntilAWriterHasBroughtItForward) {
+  write("version_1.sql");
+
+  EXPECT_EQ(StoreReader::open(path_).error().code, ErrorCode::StoreFailed);
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+  EXPECT_TRUE(StoreReader::open(path_));
+  SQLite::Database file(path_, SQLite::OPEN_READONLY);
+  EXPECT_EQ(file.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);
+}
+
+TEST_F(OldStore, OfVersion1KeepsItsScanWhichChoosesItsExposures) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto reader = StoreReader::open(path_);
+  ASSERT_TRUE(reader) << describe(reader.error());
+  const auto info = (*reader)->scan(1);
+  const auto points = (*reader)->points(1, -1, 10);
+
+  ASSERT_TRUE(info && points);
+  EXPECT_EQ(info->name, "old scan");
+  EXPECT_EQ(info->policy.target_snr, 250.0);
+  EXPECT_TRUE(info->policy.exposures.empty());
+  EXPECT_EQ(info->policy.dark_every, std::chrono::seconds(300));
+  EXPECT_EQ(points->size(), 2U);
+}
+
+}  // namespace
+}  // namespace gonio::daemon
