@@ -31,7 +31,7 @@ struct Frame {
   std::uint64_t frame_id = 0;        ///< the camera's own, grows by one
   std::uint64_t camera_time_ns = 0;  ///< the camera's own clock
   ExposureSettings settings;         ///< read back from the camera
-  double temperature_c = 0.0;
+  std::optional<double> temperature_c;  ///< nothing: the camera has no sensor
   Instant arrived{};
 };
 

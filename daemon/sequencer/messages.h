@@ -91,7 +91,7 @@ struct FrameSummary {
   drivers::ExposureSettings settings;  ///< as read back
   std::uint64_t frame_id = 0;
   std::uint64_t camera_time_ns = 0;
-  double temperature_c = 0.0;
+  std::optional<double> temperature_c;  ///< nothing: the camera has no sensor
 };
 /// The answer to TakeFrame.
 struct FrameAnswer {

@@ -206,7 +206,7 @@ void RecordWriter::write_reading(const ReadingRecord& reading, std::int64_t atte
   insert.bind(reading.region.m4).bind(reading.region.saturated);
   insert.bind(reading.settings.exposure.count()).bind(reading.settings.gain_db);
   insert.bind(static_cast<std::int64_t>(reading.camera_frame_id));
-  insert.bind(static_cast<std::int64_t>(reading.camera_time_ns)).bind(reading.camera_temperature_c);
+  insert.bind(static_cast<std::int64_t>(reading.camera_time_ns)).bind(reading.camera_temperature_c.value_or(0.0));
   insert.bind(reading.gate_count);
   for (const std::int32_t counts : reading.open_counts) insert.bind(counts);
   for (const std::int32_t counts : reading.close_counts) insert.bind(counts);

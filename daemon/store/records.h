@@ -72,7 +72,7 @@ struct ReadingRecord {
   drivers::ExposureSettings settings;
   std::uint64_t camera_frame_id = 0;
   std::uint64_t camera_time_ns = 0;
-  double camera_temperature_c = 0.0;
+  std::optional<double> camera_temperature_c;  ///< nothing: the camera has no sensor
   std::uint32_t gate_count = 0;  ///< the stage's number of this exposure
   stage::PerAxis<std::int32_t> open_counts{};
   stage::PerAxis<std::int32_t> close_counts{};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "drivers/links/pixel_unpacking.h"
+
 namespace gonio::drivers {
 namespace {
 
@@ -15,13 +17,8 @@ constexpr double kGainTolerance_db = 0.05;
 constexpr std::uint64_t kLastShortId = 0xFFFF;  // GVSP block ids of 16 bits go from 65535 to 1 (GigE Vision 2.0, 24.3)
 
 int significant_bits(const std::string& pixel_format) {
-  constexpr std::string_view kPrefix = "Mono";
-  if (!pixel_format.starts_with(kPrefix)) return 0;
-  const std::string digits = pixel_format.substr(kPrefix.size());
-  for (const int bits : {8, 10, 12, 14, 16}) {
-    if (digits == std::to_string(bits)) return bits;
-  }
-  return 0;
+  const auto format = pixel_format_of_name(pixel_format);
+  return format ? format->significant_bits : 0;
 }
 
 bool follows(std::uint64_t id, std::uint64_t last) {
@@ -40,8 +37,8 @@ std::string text(const ExposureSettings& settings) {
 }
 
 std::string text(const CameraFormat& format) {
-  return fmt::format("{} x {} px, {}, packets of {} bytes", format.width, format.height, format.pixel_format,
-                     format.packet_size_bytes);
+  return fmt::format("{} x {} px from ({}, {}), {}, packets of {} bytes", format.width, format.height, format.offset_x,
+                     format.offset_y, format.pixel_format, format.packet_size_bytes);
 }
 
 }  // namespace
@@ -86,7 +83,7 @@ Result<void> GenicamCamera::open() {
 Result<void> GenicamCamera::write_format() {
   if (significant_bits(config_.format.pixel_format) == 0) {
     return failure(error(ErrorCode::InvalidInput, "set the pixel format", config_.format.pixel_format,
-                         "one of Mono8, Mono10, Mono12, Mono14, Mono16"));
+                         "one of " + pixel_format_names()));
   }
   GONIO_TRY(link_.set_format(config_.format));
   const Result<CameraFormat> taken = link_.format();
@@ -199,12 +196,11 @@ Result<Frame> GenicamCamera::accepted(CameraFrame frame, Instant now) {
                .arrived = now};
 }
 
-// A camera without that feature is no worse a detector: its frames then say 0, and the stage's sensor stands for it.
 Result<void> GenicamCamera::refresh_temperature(Instant now) {
   if (temperature_at_ && now - *temperature_at_ < kTemperatureAge) return {};
-  const Result<double> read = link_.temperature_c();
+  const Result<std::optional<double>> read = link_.temperature_c();
   if (!read && read.error().code != ErrorCode::DeviceRefused) return failure(read.error());
-  temperature_c_ = read.value_or(0.0);
+  temperature_c_ = read.value_or(std::nullopt);  // what it will not tell at this moment it does not have
   temperature_at_ = now;
   return {};
 }

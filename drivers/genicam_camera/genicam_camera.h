@@ -53,7 +53,7 @@ class GenicamCamera final : public Detector {
   ExposureSettings taken_;                ///< as read back
   std::optional<std::uint64_t> last_id_;  ///< nothing: the stream is new
   std::optional<Instant> triggered_;      ///< set while a frame is awaited
-  double temperature_c_ = 0.0;
+  std::optional<double> temperature_c_;
   std::optional<Instant> temperature_at_;
 };
 

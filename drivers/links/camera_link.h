@@ -8,27 +8,19 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "drivers/detector.h"
+#include "drivers/links/camera_format.h"
 
 namespace gonio::drivers {
-
-/// What a camera sends, and in what pieces.
-struct CameraFormat {
-  int width = 0;
-  int height = 0;
-  std::string pixel_format;  ///< "Mono8", "Mono10", "Mono12", "Mono14" or "Mono16": one value a pixel, not packed
-  int packet_size_bytes = 0;
-  friend bool operator==(const CameraFormat&, const CameraFormat&) = default;
-};
 
 /// A frame as it came off the wire, whole or not.
 struct CameraFrame {
   bool is_complete = false;
-  std::string trouble;  ///< what is wrong with it, when it is not complete
+  std::string trouble;  ///< what is wrong with it, when it is not complete; packets that are missing, counted
   int width = 0;
   int height = 0;
-  std::vector<std::uint16_t> pixels;  ///< [height][width]; empty when it is not complete
+  std::vector<std::uint16_t> pixels;  ///< [height][width], unpacked; empty when it is not complete
   std::uint64_t frame_id = 0;
-  std::uint64_t camera_time_ns = 0;
+  std::uint64_t camera_time_ns = 0;  ///< of the camera's own clock, its ticks turned into ns
 };
 
 /// A way to one camera by GenICam features, of the few kinds that a detector needs. Features keep what was written only
@@ -41,8 +33,9 @@ class CameraLink {
  public:
   virtual ~CameraLink() = default;
 
-  /// Opens by address, without a broadcast, and takes control. A camera that another controller still holds is tried
-  /// again up to the link's own bound. Opening what is open closes it first.
+  /// Finds the camera (how, is the link's own), takes control, and switches off what would change settings by itself. A
+  /// camera that another controller still holds is tried again up to the link's own bound. Opening what is open closes
+  /// it first.
   [[nodiscard]] virtual Result<DetectorIdentity> open() = 0;
   virtual void close() = 0;
   [[nodiscard]] virtual bool is_open() const = 0;
@@ -54,7 +47,8 @@ class CameraLink {
   [[nodiscard]] virtual Result<CameraFormat> format() = 0;
   [[nodiscard]] virtual Result<void> set_exposure(const ExposureSettings& settings) = 0;
   [[nodiscard]] virtual Result<ExposureSettings> exposure() = 0;
-  [[nodiscard]] virtual Result<double> temperature_c() = 0;
+  /// Nothing: the camera has no such sensor.
+  [[nodiscard]] virtual Result<std::optional<double>> temperature_c() = 0;
 
   /// Sets the software trigger, makes buffers for the format, starts. Frame ids begin anew.
   [[nodiscard]] virtual Result<void> start() = 0;

@@ -49,10 +49,10 @@ class ScriptedCamera final : public CameraLink {
     read.exposure += rounding;
     return read;
   }
-  Result<double> temperature_c() override {
+  Result<std::optional<double>> temperature_c() override {
     ++temperatures_read;
-    if (!has_temperature) return failure(camera_error(ErrorCode::DeviceRefused));
-    return 31.5;
+    if (!has_temperature) return std::optional<double>();
+    return std::optional(31.5);
   }
   Result<void> start() override {
     ++starts;
@@ -168,15 +168,28 @@ TEST_F(GenicamCameraTest, SaysWhichFormatTheCameraDidNotTake) {
   EXPECT_THAT(who.error().seen, HasSubstr("640 x 2 px"));
 }
 
-TEST_F(GenicamCameraTest, RefusesAPackedPixelFormat) {
-  GenicamCameraConfig packed = config();
-  packed.format.pixel_format = "Mono12Packed";
-  GenicamCamera other(link, packed, clock);
+TEST_F(GenicamCameraTest, RefusesAPixelFormatOfColours) {
+  GenicamCameraConfig coloured = config();
+  coloured.format.pixel_format = "BayerRG12";
+  GenicamCamera other(link, coloured, clock);
 
   const auto who = other.ensure_open();
 
   ASSERT_FALSE(who.has_value());
   EXPECT_EQ(who.error().code, ErrorCode::InvalidInput);
+  EXPECT_THAT(who.error().limit, HasSubstr("Mono12Packed"));
+}
+
+TEST_F(GenicamCameraTest, KnowsTheBitsOfAPackedFormat) {
+  GenicamCameraConfig packed = config();
+  packed.format.pixel_format = "Mono10p";
+  GenicamCamera other(link, packed, clock);
+  ASSERT_TRUE(other.trigger());
+
+  const auto taken = other.collect(5ms);
+
+  ASSERT_TRUE(taken && *taken);
+  EXPECT_EQ((*taken)->significant_bits, 10);
 }
 
 TEST_F(GenicamCameraTest, SaysWhichExposureTheCameraDidNotTake) {
@@ -222,7 +235,7 @@ TEST_F(GenicamCameraTest, HandsOutTheFrameOfATrigger) {
   EXPECT_EQ(frame.significant_bits, 12);
   EXPECT_EQ(frame.frame_id, 1U);
   EXPECT_EQ(frame.camera_time_ns, 1000U);
-  EXPECT_DOUBLE_EQ(frame.temperature_c, 31.5);
+  EXPECT_EQ(frame.temperature_c, 31.5);
   EXPECT_EQ(frame.arrived, clock.now());
 }
 
@@ -410,7 +423,7 @@ TEST_F(GenicamCameraTest, WorksWithoutATemperature) {
   const auto taken = take();
 
   ASSERT_TRUE(taken && *taken);
-  EXPECT_EQ((*taken)->temperature_c, 0.0);
+  EXPECT_EQ((*taken)->temperature_c, std::nullopt);
 }
 
 }  // namespace

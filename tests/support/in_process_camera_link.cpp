@@ -51,9 +51,9 @@ Result<drivers::ExposureSettings> InProcessCameraLink::exposure() {
   });
 }
 
-Result<double> InProcessCameraLink::temperature_c() {
+Result<std::optional<double>> InProcessCameraLink::temperature_c() {
   GONIO_TRY(ready());
-  return instrument_.with([](Parts& parts) { return in_celsius(parts.camera.temperature()); });
+  return instrument_.with([](Parts& parts) { return std::optional(in_celsius(parts.camera.temperature())); });
 }
 
 Result<void> InProcessCameraLink::start() {

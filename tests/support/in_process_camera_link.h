@@ -21,7 +21,7 @@ class InProcessCameraLink final : public drivers::CameraLink {
   Result<drivers::CameraFormat> format() override;
   Result<void> set_exposure(const drivers::ExposureSettings& settings) override;
   Result<drivers::ExposureSettings> exposure() override;
-  Result<double> temperature_c() override;
+  Result<std::optional<double>> temperature_c() override;
   Result<void> start() override;
   void stop() override { is_streaming_ = false; }
   bool is_streaming() const override { return is_streaming_; }

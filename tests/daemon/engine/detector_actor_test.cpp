@@ -105,7 +105,7 @@ TEST_F(DetectorActorTest, AnswersWithTheStatisticsOfTheMask) {
   EXPECT_EQ(summary.settings, (drivers::ExposureSettings{200ms, 3.0}));
   EXPECT_EQ(summary.frame_id, 17U);
   EXPECT_EQ(summary.camera_time_ns, 99U);
-  EXPECT_DOUBLE_EQ(summary.temperature_c, 30.5);
+  EXPECT_EQ(summary.temperature_c, 30.5);
   EXPECT_GE(clock.now() - start, 205ms);
   EXPECT_LE(clock.now() - start, 207ms);
 }
