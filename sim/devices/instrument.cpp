@@ -45,9 +45,11 @@ double Instrument::scene_time_s(Instant t) const {
 
 std::optional<Instant> Instrument::next_event() const {
   std::optional<Instant> next = stage_.next_event();
-  for (const auto* run : {&running_, &collecting_}) {
-    if (*run) next = std::min(next.value_or((*run)->close), (*run)->close);
-  }
+  const auto consider = [&next](const std::optional<Running>& run) {
+    if (run) next = std::min(next.value_or(run->close), run->close);
+  };
+  consider(running_);
+  for (const Collector& collector : collectors_) consider(collector.running);
   return next;
 }
 
@@ -58,7 +60,9 @@ void Instrument::advance_to(Instant now) {
     integrate_to(*due);
     stage_.advance_to(*due);
     if (running_ && running_->close <= *due) finish_exposure();
-    if (collecting_ && collecting_->close <= *due) finish_collection();
+    for (Collector& collector : collectors_) {
+      if (collector.running && collector.running->close <= *due) finish_collection(collector);
+    }
   }
   integrate_to(now_);
 }
@@ -90,31 +94,38 @@ std::optional<Exposure> Instrument::take_exposure(Instant now) {
   return std::exchange(finished_, std::nullopt);
 }
 
-void Instrument::start_collection(Duration duration, Instant now) {
+std::size_t Instrument::add_collector() {
+  collectors_.emplace_back();
+  return collectors_.size() - 1;
+}
+
+void Instrument::start_collection(std::size_t collector, Duration duration, Instant now) {
   assert(duration > Duration::zero());
   advance_to(now);
-  collected_.reset();
-  collecting_ = Running{.open = now_, .close = now_ + duration, .integrated_to = now_};
+  collectors_[collector] = {.running = Running{.open = now_, .close = now_ + duration, .integrated_to = now_},
+                            .finished = std::nullopt};
 }
 
-std::optional<Instant> Instrument::collection_end() const {
-  if (collecting_) return collecting_->close;
-  return collected_ ? std::optional<Instant>(collected_->close) : std::nullopt;
+std::optional<Instant> Instrument::collection_end(std::size_t collector) const {
+  const Collector& c = collectors_[collector];
+  if (c.running) return c.running->close;
+  return c.finished ? std::optional<Instant>(c.finished->close) : std::nullopt;
 }
 
-void Instrument::drop_collection() {
-  collecting_.reset();
-  collected_.reset();
+void Instrument::drop_collection(std::size_t collector) {
+  collectors_[collector] = {};
 }
 
-std::optional<LightCollection> Instrument::take_collection(Instant now) {
+std::optional<LightCollection> Instrument::take_collection(std::size_t collector, Instant now) {
   advance_to(now);
-  return std::exchange(collected_, std::nullopt);
+  return std::exchange(collectors_[collector].finished, std::nullopt);
 }
 
 void Instrument::integrate_to(Instant t) {
   if (running_) integrate(*running_, t);
-  if (collecting_) integrate(*collecting_, t);
+  for (Collector& collector : collectors_) {
+    if (collector.running) integrate(*collector.running, t);
+  }
 }
 
 void Instrument::integrate(Running& run, Instant t) const {
@@ -163,18 +174,17 @@ void Instrument::finish_exposure() {
                        .gain_db = run.gain_db};
 }
 
-void Instrument::finish_collection() {
-  const Running run = *collecting_;
-  collecting_.reset();
+void Instrument::finish_collection(Collector& collector) {
+  const Running run = *std::exchange(collector.running, std::nullopt);
   const double from_s = scene_time_s(run.open);
   const double to_s = scene_time_s(run.close);
   const double lamp = lamp_.mean(from_s, to_s);
   const FilterSpec* filter = light_path_.filter_at(pose(run.close).positions[stage::index_of(Axis::FilterWheel)]);
-  collected_ =
+  collector.finished =
       LightCollection{.open = run.open,
                       .close = run.close,
                       .light = run.rate_integral * lamp / (scene_.detector.electrons_per_s * (to_s - from_s)),
-                      .lamp = lamp,
+                      .lamp = lamp_.monitored(from_s, to_s),
                       .wavelength = filter == nullptr ? std::nullopt : std::optional<Wavelength>(filter->centroid)};
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "base/clock.h"
 #include "sim/devices/detector_noise.h"
@@ -29,7 +31,7 @@ struct LightCollection {
   Instant open{};
   Instant close{};
   double light = 0.0;  ///< mean over the stretch, on the detector's side: sample, filter, shutters, lamp
-  double lamp = 0.0;   ///< mean of the lamp alone
+  double lamp = 0.0;   ///< mean of the lamp alone, as a monitor beside it sees it
   std::optional<Wavelength> wavelength;  ///< of the filter that stands in the light at the end
 };
 
@@ -70,14 +72,16 @@ class Instrument {
   /// The last finished exposure, once.
   [[nodiscard]] std::optional<Exposure> take_exposure(Instant now);
 
-  /// Begins to collect the light of a radiometer for `duration` > 0 of wall time, beside any exposure; one that is
-  /// under way is dropped.
-  void start_collection(Duration duration, Instant now);
-  void drop_collection();
+  /// A place for one more radiometer; its number from 0.
+  [[nodiscard]] std::size_t add_collector();
+  /// Begins to collect a radiometer's light for `duration` > 0 of wall time, beside any exposure and other collectors;
+  /// one of its own that is under way is dropped.
+  void start_collection(std::size_t collector, Duration duration, Instant now);
+  void drop_collection(std::size_t collector);
   /// When the collection ends that is under way, or ended that nobody has taken.
-  [[nodiscard]] std::optional<Instant> collection_end() const;
+  [[nodiscard]] std::optional<Instant> collection_end(std::size_t collector) const;
   /// The last finished collection, once.
-  [[nodiscard]] std::optional<LightCollection> take_collection(Instant now);
+  [[nodiscard]] std::optional<LightCollection> take_collection(std::size_t collector, Instant now);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Truth& truth() const { return truth_; }
@@ -98,7 +102,11 @@ class Instrument {
   void integrate(Running& run, Instant t) const;
   [[nodiscard]] double rate_integral(Instant from, Instant to) const;
   void finish_exposure();
-  void finish_collection();
+  struct Collector {
+    std::optional<Running> running;
+    std::optional<LightCollection> finished;
+  };
+  void finish_collection(Collector& collector);
 
   Scene scene_;
   Truth truth_;
@@ -110,8 +118,7 @@ class Instrument {
   InstrumentMemory memory_;
   std::optional<Running> running_;
   std::optional<Exposure> finished_;
-  std::optional<Running> collecting_;
-  std::optional<LightCollection> collected_;
+  std::vector<Collector> collectors_;
 };
 
 }  // namespace gonio::sim

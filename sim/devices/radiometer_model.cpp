@@ -17,18 +17,8 @@ constexpr Wavelength kAtPowerUp = nanometres(633.0);
 
 }  // namespace
 
-RadiometerSpec quiet_radiometer() {
-  RadiometerSpec spec;
-  // A typical silicon photodiode.
-  spec.responsivity = {{nanometres(400.0), 0.12},  {nanometres(500.0), 0.25}, {nanometres(600.0), 0.36},
-                       {nanometres(700.0), 0.45},  {nanometres(800.0), 0.53}, {nanometres(900.0), 0.59},
-                       {nanometres(1000.0), 0.55}, {nanometres(1100.0), 0.18}};
-  for (const double full_scale : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) spec.ranges.push_back({.full_scale_w = full_scale});
-  return spec;
-}
-
 RadiometerModel::RadiometerModel(Instrument& instrument, RadiometerSpec spec)
-    : instrument_(instrument), spec_(std::move(spec)) {
+    : instrument_(instrument), collector_(instrument.add_collector()), spec_(std::move(spec)) {
   assert(spec_.responsivity.size() >= 2 && !spec_.ranges.empty());
   power_up();
 }
@@ -93,11 +83,19 @@ double RadiometerModel::shown_w(const LightCollection& collection) const {
   return power_w * responsivity(colour) / responsivity(wavelength_);
 }
 
+double RadiometerModel::gain_of(std::size_t range) const {
+  if (spec_.u_range == 0.0 || !instrument_.scene().draws_errors) return 1.0;
+  constexpr std::size_t kMostRanges = 64;
+  Chance chance(instrument_.scene().seed, Purpose::RadiometerRange, collector_ * kMostRanges + range);
+  return 1.0 + spec_.u_range * chance.normal();
+}
+
 double RadiometerModel::noise_w(std::size_t range, double averages) {
   const RadiometerRange& r = spec_.ranges[range];
   ++samples_;
   if (r.noise == 0.0) return 0.0;
-  Chance chance(instrument_.scene().seed, Purpose::Radiometer, samples_);
+  constexpr unsigned kSampleBits = 48;  // what is left tells the meters of one instrument apart
+  Chance chance(instrument_.scene().seed, Purpose::Radiometer, (collector_ << kSampleBits) + samples_);
   return r.noise * r.full_scale_w / std::sqrt(averages) * chance.normal();
 }
 
@@ -109,22 +107,22 @@ double RadiometerModel::unsettled_w(Instant at) const {
 
 void RadiometerModel::start_sample(Instant now) {
   task_ = Task::Sample;
-  instrument_.start_collection(instrument_.scene().wall(averages_ * spec_.average_s), now);
+  instrument_.start_collection(collector_, instrument_.scene().wall(averages_ * spec_.average_s), now);
 }
 
 void RadiometerModel::start_zero(Instant now) {
   task_ = Task::Zero;
-  instrument_.start_collection(instrument_.scene().wall(spec_.zero_s), now);
+  instrument_.start_collection(collector_, instrument_.scene().wall(spec_.zero_s), now);
 }
 
 void RadiometerModel::abort() {
   task_ = Task::None;
-  instrument_.drop_collection();
+  instrument_.drop_collection(collector_);
 }
 
 std::optional<RadiometerSample> RadiometerModel::take_sample(Instant now) {
   if (task_ != Task::Sample) return std::nullopt;
-  const auto collection = instrument_.take_collection(now);
+  const auto collection = instrument_.take_collection(collector_, now);
   if (!collection) return std::nullopt;
   const double light_w = shown_w(*collection);
   const bool is_over = light_w > kOverRange * full_scale_w();
@@ -136,15 +134,15 @@ std::optional<RadiometerSample> RadiometerModel::take_sample(Instant now) {
   task_ = Task::None;
   if (is_over) return RadiometerSample{.is_overload = true};
   const RadiometerRange& range = spec_.ranges[range_];
-  const double power_w = light_w + range.offset * range.full_scale_w - zero_w_[range_] + noise_w(range_, averages_) +
-                         unsettled_w(collection->open);
+  const double power_w = light_w * gain_of(range_) + range.offset * range.full_scale_w - zero_w_[range_] +
+                         noise_w(range_, averages_) + unsettled_w(collection->open);
   if (is_auto_ && light_w < kStepDown * range.full_scale_w) change_range(range_for(light_w), collection->close);
   return RadiometerSample{.power_w = power_w};
 }
 
 std::optional<bool> RadiometerModel::take_zero(Instant now) {
   if (task_ != Task::Zero) return std::nullopt;
-  const auto collection = instrument_.take_collection(now);
+  const auto collection = instrument_.take_collection(collector_, now);
   if (!collection) return std::nullopt;
   task_ = Task::None;
   const double light_w = shown_w(*collection);

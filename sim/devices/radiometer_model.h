@@ -2,45 +2,14 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/units.h"
 #include "sim/devices/instrument.h"
+#include "sim/scene/radiometer_spec.h"
 
 namespace gonio::sim {
-
-/// What the radiometer looks at: the sample through filters and shutters, or the lamp before all of them.
-enum class RadiometerPlace : std::uint8_t { Detector, Monitor };
-
-struct Responsivity {
-  Wavelength wavelength;
-  double a_per_w = 0.0;
-};
-
-/// One range; noise and offset as parts of its full scale.
-struct RadiometerRange {
-  double full_scale_w = 0.0;
-  double noise = 0.0;   ///< standard deviation of one average
-  double offset = 0.0;  ///< what it shows in the dark before a zero
-};
-
-/// A bench power meter with a photodiode. Times are scene time.
-struct RadiometerSpec {
-  std::string serial = "SIM-PM-01";
-  RadiometerPlace place = RadiometerPlace::Detector;
-  double watts = 1e-3;                             ///< on its diode for light (or lamp) 1
-  Wavelength lamp_wavelength = nanometres(568.0);  ///< of what a monitor sees
-  std::vector<Responsivity> responsivity;          ///< ascending wavelengths; linear between, limits of the setting
-  std::vector<RadiometerRange> ranges;             ///< ascending
-  double average_s = 0.003;                        ///< one average
-  double settle_s = 0.0;                           ///< time constant after a change of range; 0: at once
-  double settle_error = 0.05;                      ///< of full scale, right after it
-  double zero_s = 0.5;
-};
-/// Silicon from 400 nm to 1100 nm, five ranges from 1 uW to 10 mW, without noise, offset and settling.
-[[nodiscard]] RadiometerSpec quiet_radiometer();
 
 /// What one sample shows.
 struct RadiometerSample {
@@ -74,7 +43,7 @@ class RadiometerModel {
   void start_zero(Instant now);
   void abort();
   /// When what is under way ends.
-  [[nodiscard]] std::optional<Instant> due() const { return instrument_.collection_end(); }
+  [[nodiscard]] std::optional<Instant> due() const { return instrument_.collection_end(collector_); }
   /// The finished sample, once. With a range of its own choice the model measures again when the light outgrew it.
   [[nodiscard]] std::optional<RadiometerSample> take_sample(Instant now);
   /// The finished zero, once: false when there was too much light, and the zero is as it was.
@@ -92,7 +61,10 @@ class RadiometerModel {
   [[nodiscard]] std::size_t range_for(double power_w) const;
   void change_range(std::size_t range, Instant now);
 
+  [[nodiscard]] double gain_of(std::size_t range) const;
+
   Instrument& instrument_;
+  std::size_t collector_;  ///< of the instrument
   RadiometerSpec spec_;
   Wavelength wavelength_;
   std::size_t range_ = 0;

@@ -8,6 +8,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace gonio::sim {
@@ -29,16 +30,31 @@ std::string program_path(const std::string& name, const std::string& executable)
   return std::filesystem::exists(beside, ignored) ? beside.string() : name;
 }
 
+std::vector<char*> own_environment_without(const std::map<std::string, std::string>& names) {
+  std::vector<char*> kept;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    if (!names.contains(std::string(text.substr(0, text.find('='))))) kept.push_back(*entry);
+  }
+  return kept;
+}
+
 }  // namespace
 
 Result<Child> Child::start(std::vector<std::string> arguments, const std::string& executable,
-                           const std::string& state_folder) {
+                           const std::string& state_folder,
+                           const std::map<std::string, std::string>& more_environment) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) {
     argument = with_state(std::move(argument), state_folder);
     argv.push_back(argument.data());
   }
   argv.push_back(nullptr);
+  std::vector<std::string> settings;
+  for (const auto& [name, value] : more_environment) settings.push_back(name + "=" + value);
+  std::vector<char*> environment = own_environment_without(more_environment);
+  for (std::string& setting : settings) environment.push_back(setting.data());
+  environment.push_back(nullptr);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -48,7 +64,7 @@ Result<Child> Child::start(std::vector<std::string> arguments, const std::string
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   const std::string program = program_path(arguments.front(), executable);
   pid_t pid = -1;
-  const int trouble = posix_spawnp(&pid, program.c_str(), nullptr, &attributes, argv.data(), environ);
+  const int trouble = posix_spawnp(&pid, program.c_str(), nullptr, &attributes, argv.data(), environment.data());
   posix_spawnattr_destroy(&attributes);
   if (trouble == 0) return Child(pid);
   return failure({.code = ErrorCode::FileUnreadable,

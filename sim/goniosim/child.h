@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +16,10 @@ namespace gonio::sim {
 class Child {
  public:
   /// `arguments[0]` is the program, looked for beside `executable` first, then in the PATH; {state} in an argument
-  /// becomes `state_folder`. Errors: FileUnreadable.
+  /// becomes `state_folder`. `more_environment` joins this process' own. Errors: FileUnreadable.
   [[nodiscard]] static Result<Child> start(std::vector<std::string> arguments, const std::string& executable,
-                                           const std::string& state_folder);
+                                           const std::string& state_folder,
+                                           const std::map<std::string, std::string>& more_environment);
   void signal(int number) const;
   /// The exit code, 128 + N for an end by signal N, once it has ended.
   [[nodiscard]] std::optional<int> ended() const;

@@ -24,6 +24,7 @@
 #include "sim/goniosim/simulator.h"
 #include "sim/goniosim/truth_table.h"
 #include "sim/scene/read_scene.h"
+#include "sim/wires/usb_bus.h"
 
 namespace gonio::sim {
 namespace {
@@ -176,13 +177,14 @@ int serve(Simulator& simulator, const FileDescriptor& signals, const std::option
   }
 }
 
-int simulate(const Options& options) {
+int simulate(Options options) {
   auto scene = scene_of(options);
   if (!scene) return fail(scene.error());
   const FileDescriptor signals = take_signals();
   std::optional<TemporaryFolder> temporary;
   if (options.state.empty()) temporary.emplace();
   const SystemClock clock;
+  options.wishes.make_usb = [](const auto& radiometers) { return std::make_unique<UsbBus>(radiometers); };
   const auto simulator =
       Simulator::start(*std::move(scene), temporary ? temporary->path() : options.state, options.wishes, clock);
   if (!simulator) return fail(simulator.error());
@@ -195,7 +197,8 @@ int simulate(const Options& options) {
                running.seed, running.time_scale, stage, addresses.camera_address, (*simulator)->folder().path());
   std::optional<Child> child;
   if (!options.daemon.empty()) {
-    auto started = Child::start(options.daemon, this_executable(), (*simulator)->folder().path());
+    auto started =
+        Child::start(options.daemon, this_executable(), (*simulator)->folder().path(), addresses.usb_environment);
     if (!started) return fail(started.error());
     child = *std::move(started);
   }

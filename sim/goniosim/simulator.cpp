@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "sim/wires/modbus_server.h"
 #include "sim/wires/rtu_server.h"
@@ -65,9 +66,30 @@ Result<void> Simulator::bind_stage(const SimulatorState& last, const WireWishes&
 Result<void> Simulator::bind(const SimulatorState& last, const WireWishes& wishes) {
   GONIO_TRY(bind_stage(last, wishes));
   GONIO_TRY(bind_camera(wishes.camera_address.empty() ? last.camera_address : wishes.camera_address));
+  GONIO_TRY(plug_radiometers(wishes));
   auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_, *camera_);
   if (!control) return failure(std::move(control).error());
   control_ = *std::move(control);
+  return {};
+}
+
+// After the other wires: from here on this process sees devices through the emulation.
+Result<void> Simulator::plug_radiometers(const WireWishes& wishes) {
+  std::vector<LiveRadiometer*> all;
+  for (const RadiometerSpec& spec : instrument_.scene().radiometers) {
+    all.push_back(&radiometers_.emplace_back(instrument_, spec));
+  }
+  if (all.empty()) return {};
+  if (!wishes.make_usb) {
+    return failure({.code = ErrorCode::Internal,
+                    .device = "goniosim",
+                    .tried = "serve the radiometers",
+                    .seen = "this program has no emulated USB",
+                    .limit = {}});
+  }
+  usb_ = wishes.make_usb(all);
+  for (std::size_t port = 0; port < all.size(); ++port) GONIO_TRY(usb_->plug(port));
+  addresses_.usb_environment = usb_->environment();
   return {};
 }
 

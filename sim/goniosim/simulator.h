@@ -1,5 +1,6 @@
 #pragma once
 
+#include <list>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "sim/wires/gige_camera_server.h"
 #include "sim/wires/live_instrument.h"
 #include "sim/wires/stage_wire.h"
+#include "sim/wires/usb_ports.h"
 
 namespace gonio::sim {
 
@@ -19,6 +21,7 @@ struct WireWishes {
   int stage_baud = 115200;
   std::uint16_t stage_port = 0;
   std::string camera_address;
+  MakeUsbPorts make_usb;  ///< for a scene with radiometers
 };
 
 /// A whole simulated instrument on its wires, living in a state folder: what goniosim is around its command line.
@@ -26,7 +29,7 @@ struct WireWishes {
 class Simulator {
  public:
   /// Powers up: boot counter + 1, wires, papers, control socket, ready file. `clock` must outlive it.
-  /// Errors: Busy (the folder), PortBusy, InvalidInput, FileUnreadable, DiskFull.
+  /// Errors: Busy (the folder), PortBusy, InvalidInput, FileUnreadable, DiskFull, Internal (no USB).
   [[nodiscard]] static Result<std::unique_ptr<Simulator>> start(Scene scene, const std::string& state_folder,
                                                                 const WireWishes& wishes, const Clock& clock);
   ~Simulator();
@@ -43,6 +46,7 @@ class Simulator {
   Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, const Clock& clock);
   [[nodiscard]] Result<void> bind(const SimulatorState& last, const WireWishes& wishes);
   [[nodiscard]] Result<void> bind_stage(const SimulatorState& last, const WireWishes& wishes);
+  [[nodiscard]] Result<void> plug_radiometers(const WireWishes& wishes);
   [[nodiscard]] Result<void> bind_camera(const std::string& wished);
 
   StateFolder folder_;
@@ -53,6 +57,8 @@ class Simulator {
   bool has_saved_ = false;
   std::unique_ptr<StageWire> stage_;
   std::unique_ptr<GigeCameraServer> camera_;
+  std::list<LiveRadiometer> radiometers_;  ///< in the order of the scene, which is that of the ports
+  std::unique_ptr<UsbPorts> usb_;          ///< null: the scene has no radiometer
   std::unique_ptr<ControlServer> control_;
 };
 

@@ -119,10 +119,15 @@ Result<void> StateFolder::write_papers(const Scene& scene, const WireAddresses& 
 }
 
 Result<void> StateFolder::write_ready(const WireAddresses& addresses) const {
-  const json ready{{"stage_address", addresses.stage_host}, {"stage_port", addresses.stage_port},
-                   {"stage_line", addresses.stage_line},    {"camera_address", addresses.camera_address},
-                   {"instrument", instrument_file()},       {"references", path_ + "/reference"},
-                   {"control", control_socket()},           {"pid", ::getpid()}};
+  const json ready{{"stage_address", addresses.stage_host},
+                   {"stage_port", addresses.stage_port},
+                   {"stage_line", addresses.stage_line},
+                   {"camera_address", addresses.camera_address},
+                   {"instrument", instrument_file()},
+                   {"references", path_ + "/reference"},
+                   {"control", control_socket()},
+                   {"pid", ::getpid()},
+                   {"usb_environment", addresses.usb_environment}};
   return write("ready", ready.dump() + "\n");
 }
 

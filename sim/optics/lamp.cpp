@@ -68,11 +68,15 @@ double Lamp::monitor_drift(double at_s) const {
   return amplitude * sum;
 }
 
+double Lamp::monitored(double from_s, double to_s) const {
+  return mean(from_s, to_s) * (1.0 + monitor_drift(0.5 * (from_s + to_s)));
+}
+
 MonitorReading Lamp::monitor(double from_s, double to_s, std::uint64_t exposure) const {
   constexpr double kFewest = 4.0;
   constexpr double kMost = 1e6;
   const double n = std::clamp(std::floor((to_s - from_s) * spec_.monitor_rate_hz), kFewest, kMost);
-  const double mean_true = mean(from_s, to_s) * (1.0 + monitor_drift(0.5 * (from_s + to_s)));
+  const double mean_true = monitored(from_s, to_s);
   MonitorReading reading{.mean = mean_true, .standard_error = 0.0, .samples = static_cast<std::uint32_t>(n)};
   if (spec_.monitor_noise == 0.0) return reading;
   // Mean and variance of n normal samples are independent: drawn directly instead of sample by sample.

@@ -21,6 +21,8 @@ class Lamp {
 
   /// The mean output over [from_s, to_s], flicker included: what the sample gets. `to_s` > `from_s`.
   [[nodiscard]] double mean(double from_s, double to_s) const;
+  /// The same with what a monitor drifts by itself: what a noiseless one shows.
+  [[nodiscard]] double monitored(double from_s, double to_s) const;
   /// The monitor over the same stretch: the lamp, its own slow drift, its own noise (one draw for each `exposure`).
   [[nodiscard]] MonitorReading monitor(double from_s, double to_s, std::uint64_t exposure) const;
   /// One look at the monitor.

@@ -13,13 +13,14 @@ enum class Purpose : std::uint32_t {
   ShapeMode = 4,  ///< counter: mode
   Linearity = 5,
   LampPhase = 6,
-  Flicker = 7,       ///< counter: cell of scene time
-  MonitorDrift = 8,  ///< counter: component
-  MonitorNoise = 9,  ///< counter: exposure
-  MonitorNow = 10,   ///< counter: cell of scene time
-  Placing = 11,      ///< counter: move
-  Pixels = 12,       ///< counter: exposure
-  Radiometer = 13,   ///< counter: sample
+  Flicker = 7,           ///< counter: cell of scene time
+  MonitorDrift = 8,      ///< counter: component
+  MonitorNoise = 9,      ///< counter: exposure
+  MonitorNow = 10,       ///< counter: cell of scene time
+  Placing = 11,          ///< counter: move
+  Pixels = 12,           ///< counter: exposure
+  Radiometer = 13,       ///< counter: meter, sample
+  RadiometerRange = 14,  ///< counter: meter, range
 };
 
 /// A stream of chance that depends on nothing but (seed, purpose, counter): how often one effect draws never shifts

@@ -69,6 +69,7 @@ std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
 }
 
 std::string detector_section(const Scene& scene, const WireAddresses& addresses) {
+  if (std::string meter = radiometer_detector_section(scene); !meter.empty()) return meter;
   const DetectorSpec& spec = scene.detector;
   const Aperture aperture = aperture_of(spec);
   constexpr double kRounding = 1.0 / 12.0;  // the variance of rounding to whole DN
@@ -88,6 +89,8 @@ std::string detector_section(const Scene& scene, const WireAddresses& addresses)
 std::string uncertainty_sections(const Scene& scene) {
   const AngleSpec& angles = scene.angles;
   const LampSpec& lamp = scene.lamp;
+  const RadiometerSpec* meter = radiometer_at(scene, RadiometerPlace::Monitor);
+  const double monitor = lamp.power * (meter == nullptr ? 1.0 : meter->watts);
   return fmt::format(
       "\n[angles]\nu_zero_theta_i_deg = {:.10g}\nu_zero_theta_r_deg = {:.10g}\nu_zero_phi_r_deg = {:.10g}\n"
       "u_repeat_deg = {:.10g}\ndetector_half_cone_deg = 0.5\nsource_half_cone_deg = 0.5\n"
@@ -95,7 +98,7 @@ std::string uncertainty_sections(const Scene& scene) {
       "= {:.6g}\n",
       in_degrees(angles.u_zero_theta_i), in_degrees(angles.u_zero_theta_r), in_degrees(angles.u_zero_phi_r),
       in_degrees(angles.u_repeat), lamp.u_after_monitor, wall_s(scene, lamp.correlation_s), lamp.u_reproducibility,
-      0.2 * lamp.power, 5.0 * lamp.power);
+      0.2 * monitor, 5.0 * monitor);
 }
 
 }  // namespace
@@ -105,7 +108,8 @@ std::string instrument_toml(const Scene& scene, const WireAddresses& addresses) 
              "# The instrument of the scene \"{0}\", written by goniosim. All times are wall time.\n"
              "[instrument]\nname = \"simulated: {0}\"\n",
              scene.name) +
-         stage_section(scene, addresses) + detector_section(scene, addresses) + uncertainty_sections(scene);
+         stage_section(scene, addresses) + detector_section(scene, addresses) + radiometer_monitor_section(scene) +
+         uncertainty_sections(scene);
 }
 
 }  // namespace gonio::sim

@@ -152,6 +152,7 @@ void read_sections(TomlReader& own, TomlReader* bench, Scene& scene) {
   read_reference(from("reference").table("reference"), scene.reference);
   if (auto t = from("angles").optional_table("angles")) read_angles(*t, scene.angles);
   if (auto t = from("environment").optional_table("environment")) read_environment(*t, scene.environment);
+  read_radiometers(from("radiometers"), scene);
   TomlReader& filters = from("filters");
   for (TomlReader& t : filters.tables("filters")) scene.filters.push_back(read_filter(t));
   if (scene.filters.empty()) filters.fail("filters", ErrorCode::MissingKey, "no [[filters]]", "at least one filter");

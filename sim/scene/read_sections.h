@@ -9,4 +9,7 @@ namespace gonio::sim {
 /// `bench` (may be null). Errors stick in the reader of the text that they stand in.
 void read_sections(TomlReader& own, TomlReader* bench, Scene& scene);
 
+/// [[radiometers]], if there are any. Errors stick in the reader.
+void read_radiometers(TomlReader& root, Scene& scene);
+
 }  // namespace gonio::sim

@@ -10,6 +10,7 @@
 #include "protocol/stage/axis.h"
 #include "protocol/stage/register_map.h"
 #include "reflectance/surface/surface.h"
+#include "sim/scene/radiometer_spec.h"
 #include "sim/scene/reference_spec.h"
 
 namespace gonio::sim {
@@ -109,6 +110,7 @@ struct Scene {
   AngleSpec angles;
   EnvironmentSpec environment;
   std::vector<FilterSpec> filters;
+  std::vector<RadiometerSpec> radiometers;  ///< one before the sample and one before the lamp at most
 
   [[nodiscard]] double scene_seconds(Duration wall) const { return in_seconds(wall) * time_scale; }
   [[nodiscard]] Duration wall(double scene_s) const { return seconds(scene_s / time_scale); }

@@ -9,6 +9,7 @@
 #include <umockdev.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <condition_variable>
 #include <cstddef>
@@ -32,7 +33,7 @@ constexpr std::size_t kSetupBytes = 8;
 constexpr std::uint8_t kDirectionIn = 0x80;
 constexpr int kOneSlotBytes = 4096;  // the smallest pipe: one page
 constexpr int kFirstAddress = 2;     // 1 is the root hub
-constexpr const char* kSysPath = "/sys/devices/pci0000:00/usb1/1-1";
+constexpr const char* kPreload = "libumockdev-preload.so.0";
 
 struct Unref {
   void operator()(gpointer object) const { g_object_unref(object); }
@@ -105,19 +106,35 @@ class Node {
 
 }  // namespace
 
-struct UsbBus::Impl {
-  explicit Impl(LiveRadiometer& the_radiometer)
-      : radiometer(the_radiometer), testbed(umockdev_testbed_new()), handler(umockdev_ioctl_base_new()) {
-    g_signal_connect(handler.get(), "handle-ioctl", G_CALLBACK(&Impl::on_ioctl), this);
+// The emulated system that the ports share.
+struct UsbBus::System {
+  Owned<UMockdevTestbed> testbed{umockdev_testbed_new()};
+  std::atomic<int> last_address{kFirstAddress - 1};
+
+  [[nodiscard]] std::string root() const {
+    gchar* root = umockdev_testbed_get_root_dir(testbed.get());
+    std::string path = root;
+    g_free(root);
+    return path;
+  }
+};
+
+struct UsbBus::Port {
+  Port(System& the_system, LiveRadiometer& the_radiometer, std::size_t number)
+      : system(the_system),
+        radiometer(the_radiometer),
+        device_path(fmt::format("/devices/pci0000:00/usb1/1-{}", number)),
+        handler(umockdev_ioctl_base_new()) {
+    g_signal_connect(handler.get(), "handle-ioctl", G_CALLBACK(&Port::on_ioctl), this);
     clockwork = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
-  ~Impl() {
+  ~Port() {
     unplug();
     clockwork.request_stop();
     clockwork.join();
   }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Port(const Port&) = delete;
+  Port& operator=(const Port&) = delete;
 
   [[nodiscard]] std::string device_text() const;
   Result<void> plug();
@@ -125,7 +142,7 @@ struct UsbBus::Impl {
   [[nodiscard]] tl::unexpected<Error> failed(std::string seen) const;
 
   static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self) {
-    return static_cast<Impl*>(self)->serve(client);
+    return static_cast<Port*>(self)->serve(client);
   }
   gboolean serve(UMockdevIoctlClient* client);
   gboolean serve_claim(UMockdevIoctlClient* client, UMockdevIoctlData* argument, bool is_claim);
@@ -142,13 +159,14 @@ struct UsbBus::Impl {
   void forget_the_dead();
   void run(const std::stop_token& stop);
 
+  System& system;
   LiveRadiometer& radiometer;
-  Owned<UMockdevTestbed> testbed;
+  std::string device_path;  ///< below /sys
   Owned<UMockdevIoctlBase> handler;
   std::mutex mutex;  ///< over all below; the instrument's is taken inside of it
   std::condition_variable_any something_due;
   std::optional<Instant> due;
-  int address = kFirstAddress - 1;
+  int address = 0;
   std::string node_name;
   Node node;
   bool is_there = false;
@@ -158,7 +176,7 @@ struct UsbBus::Impl {
   std::jthread clockwork;  // last: it uses all of the above
 };
 
-tl::unexpected<Error> UsbBus::Impl::failed(std::string seen) const {
+tl::unexpected<Error> UsbBus::Port::failed(std::string seen) const {
   return failure({.code = ErrorCode::Internal,
                   .device = "USB bus",
                   .tried = "plug the radiometer in",
@@ -168,31 +186,29 @@ tl::unexpected<Error> UsbBus::Impl::failed(std::string seen) const {
 
 // As `umockdev-record` writes devices, but for the node: from an "N:" line it would be a plain file, always ready, on
 // which libusb spins.
-std::string UsbBus::Impl::device_text() const {
+std::string UsbBus::Port::device_text() const {
   std::string hex;
   for (const std::uint8_t byte : radiometer.with([](UsbtmcFunction&f, Instant) { return f.descriptors(); })) {
     hex += fmt::format("{:02X}", byte);
   }
   return fmt::format(
-      "P: /devices/pci0000:00/usb1/1-1\n"
+      "P: {4}\n"
       "E: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={0:03}\n"
       "E: DEVNAME={1}\nE: MAJOR=189\nE: MINOR={2}\n"
       "A: busnum=1\\n\nA: devnum={0}\\n\nA: bConfigurationValue=1\\n\nA: speed=480\\n\nH: descriptors={3}\n",
-      address, node_name, address - 1, hex);
+      address, node_name, address - 1, hex, device_path);
 }
 
-Result<void> UsbBus::Impl::plug() {
+Result<void> UsbBus::Port::plug() {
   {
     const std::lock_guard lock(mutex);
     if (is_there) {
       return failure(
           {.code = ErrorCode::WrongState, .device = "USB bus", .tried = "plug in", .seen = "it is", .limit = {}});
     }
-    ++address;
+    address = ++system.last_address;
     node_name = fmt::format("/dev/bus/usb/001/{:03}", address);
-    gchar* root = umockdev_testbed_get_root_dir(testbed.get());
-    node = Node(root + node_name);
-    g_free(root);
+    node = Node(system.root() + node_name);
     if (!node.is_sound()) return failed(fmt::format("no pipe at {}: {}", node_name, std::strerror(errno)));
     radiometer.with([](UsbtmcFunction& function, Instant) { function.power_up(); });
     is_there = true;
@@ -200,8 +216,8 @@ Result<void> UsbBus::Impl::plug() {
   // Handler and node come first: adding the device announces it.
   GError* error = nullptr;
   const std::string text = device_text();
-  if (umockdev_testbed_attach_ioctl(testbed.get(), node_name.c_str(), handler.get(), &error) == FALSE ||
-      umockdev_testbed_add_from_string(testbed.get(), text.c_str(), &error) == FALSE) {
+  if (umockdev_testbed_attach_ioctl(system.testbed.get(), node_name.c_str(), handler.get(), &error) == FALSE ||
+      umockdev_testbed_add_from_string(system.testbed.get(), text.c_str(), &error) == FALSE) {
     const std::string seen = error == nullptr ? "umockdev refused" : error->message;
     g_clear_error(&error);
     return failed(seen);
@@ -209,7 +225,7 @@ Result<void> UsbBus::Impl::plug() {
   return {};
 }
 
-void UsbBus::Impl::unplug() {
+void UsbBus::Port::unplug() {
   {
     const std::lock_guard lock(mutex);
     if (!is_there) return;
@@ -222,12 +238,13 @@ void UsbBus::Impl::unplug() {
     }
     node.remove();
   }
-  umockdev_testbed_uevent(testbed.get(), kSysPath, "remove");
-  umockdev_testbed_remove_device(testbed.get(), kSysPath);
-  umockdev_testbed_detach_ioctl(testbed.get(), node_name.c_str(), nullptr);
+  const std::string sys_path = "/sys" + device_path;
+  umockdev_testbed_uevent(system.testbed.get(), sys_path.c_str(), "remove");
+  umockdev_testbed_remove_device(system.testbed.get(), sys_path.c_str());
+  umockdev_testbed_detach_ioctl(system.testbed.get(), node_name.c_str(), nullptr);
 }
 
-gboolean UsbBus::Impl::serve(UMockdevIoctlClient* client) {
+gboolean UsbBus::Port::serve(UMockdevIoctlClient* client) {
   UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
   const gulong request = umockdev_ioctl_client_get_request(client);
   const std::lock_guard lock(mutex);
@@ -258,7 +275,7 @@ gboolean UsbBus::Impl::serve(UMockdevIoctlClient* client) {
 }
 
 // The first request after each opening. With these libusb never cuts a transfer into pieces.
-gboolean UsbBus::Impl::serve_capabilities(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+gboolean UsbBus::Port::serve_capabilities(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   forget_the_dead();
   constexpr std::uint32_t kCapabilities = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
                                           USBDEVFS_CAP_BULK_SCATTER_GATHER | USBDEVFS_CAP_BULK_CONTINUATION |
@@ -269,7 +286,7 @@ gboolean UsbBus::Impl::serve_capabilities(UMockdevIoctlClient* client, UMockdevI
   return complete(client, 0);
 }
 
-gboolean UsbBus::Impl::serve_claim(UMockdevIoctlClient* client, UMockdevIoctlData* argument, bool is_claim) {
+gboolean UsbBus::Port::serve_claim(UMockdevIoctlClient* client, UMockdevIoctlData* argument, bool is_claim) {
   std::uint32_t number = 0;
   const Data data = resolved(argument, 0, sizeof number);
   if (data == nullptr) return complete(client, -1, EFAULT);
@@ -282,7 +299,7 @@ gboolean UsbBus::Impl::serve_claim(UMockdevIoctlClient* client, UMockdevIoctlDat
   return complete(client, 0);
 }
 
-gboolean UsbBus::Impl::serve_clear_halt(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+gboolean UsbBus::Port::serve_clear_halt(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   std::uint32_t endpoint = 0;
   const Data data = resolved(argument, 0, sizeof endpoint);
   if (data == nullptr) return complete(client, -1, EFAULT);
@@ -291,7 +308,7 @@ gboolean UsbBus::Impl::serve_clear_halt(UMockdevIoctlClient* client, UMockdevIoc
   return complete(client, 0);
 }
 
-gboolean UsbBus::Impl::submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+gboolean UsbBus::Port::submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   Urb urb{.owner = another(client), .urb = resolved(argument, 0, sizeof(usbdevfs_urb)), .buffer = {}, .bytes = {}};
   if (urb.urb == nullptr) return complete(client, -1, EFAULT);
   usbdevfs_urb asked;  // not initialised: its array of no elements cannot be
@@ -310,7 +327,7 @@ gboolean UsbBus::Impl::submit(UMockdevIoctlClient* client, UMockdevIoctlData* ar
 }
 
 // Control and OUT are done at once; IN waits until the device has something.
-void UsbBus::Impl::transfer(Urb urb) {
+void UsbBus::Port::transfer(Urb urb) {
   const std::span<const std::uint8_t> given =
       urb.buffer == nullptr ? std::span<const std::uint8_t>() : std::span(urb.buffer->data, urb.length);
   if (urb.type == USBDEVFS_URB_TYPE_CONTROL) {
@@ -330,13 +347,13 @@ void UsbBus::Impl::transfer(Urb urb) {
   finish(std::move(urb), status_of(outcome));
 }
 
-UsbAnswer UsbBus::Impl::poll_in(const Urb& urb) {
+UsbAnswer UsbBus::Port::poll_in(const Urb& urb) {
   return radiometer.with([&](UsbtmcFunction& f, Instant now) {
     return urb.type == USBDEVFS_URB_TYPE_INTERRUPT ? f.interrupt_in() : f.bulk_in(urb.length, now);
   });
 }
 
-void UsbBus::Impl::pump() {
+void UsbBus::Port::pump() {
   radiometer.with([](UsbtmcFunction& f, Instant now) { f.advance_to(now); });
   for (auto urb = waiting.begin(); urb != waiting.end();) {
     UsbAnswer answer = poll_in(*urb);
@@ -356,13 +373,13 @@ void UsbBus::Impl::pump() {
   if (std::exchange(due, next) != next && next) something_due.notify_one();
 }
 
-void UsbBus::Impl::finish(Urb urb, int status) {
+void UsbBus::Port::finish(Urb urb, int status) {
   urb.status = status;
   finished.push_back(std::move(urb));
   node.set_ready(true);
 }
 
-gboolean UsbBus::Impl::discard(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+gboolean UsbBus::Port::discard(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   gulong address_of_urb = 0;
   std::memcpy(&address_of_urb, argument->data, sizeof address_of_urb);
   const auto found = std::ranges::find_if(
@@ -374,7 +391,7 @@ gboolean UsbBus::Impl::discard(UMockdevIoctlClient* client, UMockdevIoctlData* a
   return complete(client, 0);
 }
 
-gboolean UsbBus::Impl::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+gboolean UsbBus::Port::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   const auto found = std::ranges::find_if(finished, [&](const Urb& urb) { return urb.owner.get() == client; });
   if (found == finished.end()) return complete(client, -1, is_there ? EAGAIN : ENODEV);
   const Urb urb = std::move(*found);
@@ -396,14 +413,14 @@ gboolean UsbBus::Impl::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argu
 
 // The kernel drops claims and URBs when a descriptor is closed. umockdev 0.17 says nothing then: look when another
 // comes.
-void UsbBus::Impl::forget_the_dead() {
+void UsbBus::Port::forget_the_dead() {
   const auto is_dead = [](const Client& client) { return umockdev_ioctl_client_get_connected(client.get()) == FALSE; };
   std::erase_if(claims, [&](const auto& claim) { return is_dead(claim.second); });
   for (auto* urbs : {&waiting, &finished}) urbs->remove_if([&](const Urb& urb) { return is_dead(urb.owner); });
   if (finished.empty()) node.set_ready(false);
 }
 
-void UsbBus::Impl::run(const std::stop_token& stop) {
+void UsbBus::Port::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex);
   while (!stop.stop_requested()) {
     if (!due) {
@@ -416,14 +433,22 @@ void UsbBus::Impl::run(const std::stop_token& stop) {
   }
 }
 
-UsbBus::UsbBus(LiveRadiometer& radiometer) : impl_(std::make_unique<Impl>(radiometer)) {}
+UsbBus::UsbBus(const std::vector<LiveRadiometer*>& radiometers) : system_(std::make_unique<System>()) {
+  for (LiveRadiometer* radiometer : radiometers) {
+    ports_.push_back(std::make_unique<Port>(*system_, *radiometer, ports_.size() + 1));
+  }
+}
 UsbBus::~UsbBus() = default;
 
-Result<void> UsbBus::plug() {
-  return impl_->plug();
+Result<void> UsbBus::plug(std::size_t port) {
+  return ports_.at(port)->plug();
 }
-void UsbBus::unplug() {
-  impl_->unplug();
+void UsbBus::unplug(std::size_t port) {
+  ports_.at(port)->unplug();
+}
+
+std::map<std::string, std::string> UsbBus::environment() const {
+  return {{"LD_PRELOAD", kPreload}, {"UMOCKDEV_DIR", system_->root()}};
 }
 
 }  // namespace gonio::sim

@@ -1,34 +1,43 @@
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "base/result.h"
-#include "sim/wires/live_radiometer.h"
+#include "sim/wires/usb_ports.h"
 
 namespace gonio::sim {
 
-/// USB as this process would have it with one port for a radiometer: sysfs, the device's node, usbfs, uevents, by
-/// umockdev. An unmodified libusb, in this process or in a child, finds and drives the device. Needs
+/// USB as this process would have it with a port for each radiometer: sysfs, the devices' nodes, usbfs, uevents, by
+/// umockdev. An unmodified libusb, in this process or in a child, finds and drives the devices. Needs
 /// libumockdev-preload in front of libc: linked, as the target gonio_sim_usb does, or by LD_PRELOAD.
 ///
 /// In wall time only: a reply that is due later is announced when the clock's time has passed. One bus a process at a
-/// time. Two threads: umockdev's, which serves libusb, and one for what is due. Threads of callers: any.
-class UsbBus {
+/// time. Threads: umockdev's, which serves libusb, and one a port for what is due. Threads of callers: any.
+class UsbBus final : public UsbPorts {
  public:
-  /// The port is empty at first. `radiometer` must outlive it; users of libusb must have ended before it does.
-  explicit UsbBus(LiveRadiometer& radiometer);
-  ~UsbBus();
+  /// The ports are empty at first. The radiometers must outlive it; users of libusb must have ended before it does.
+  explicit UsbBus(const std::vector<LiveRadiometer*>& radiometers);
+  explicit UsbBus(LiveRadiometer& radiometer) : UsbBus(std::vector<LiveRadiometer*>{&radiometer}) {}
+  ~UsbBus() override;
   UsbBus(const UsbBus&) = delete;
   UsbBus& operator=(const UsbBus&) = delete;
 
-  /// The device appears under the next address, as without power before. Errors: Internal, WrongState (it is there).
-  [[nodiscard]] Result<void> plug();
-  /// It is gone; transfers under way end so. Does nothing when it is.
-  void unplug();
+  [[nodiscard]] Result<void> plug(std::size_t port) override;
+  void unplug(std::size_t port) override;
+  /// The only port there is.
+  [[nodiscard]] Result<void> plug() { return plug(0); }
+  void unplug() { unplug(0); }
+  [[nodiscard]] std::map<std::string, std::string> environment() const override;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  struct System;
+  struct Port;
+  std::unique_ptr<System> system_;
+  std::vector<std::unique_ptr<Port>> ports_;
 };
 
 }  // namespace gonio::sim
