@@ -69,6 +69,7 @@ struct ModbusContext::Impl {
     modbus_set_byte_timeout(context.get(), 0, 0);
   }
   std::unique_ptr<modbus_t, FreeModbus> context;
+  ModbusUnit unit;
 };
 
 ModbusContext::ModbusContext(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -97,15 +98,23 @@ void ModbusContext::use_socket(int descriptor) {
   modbus_set_socket(impl_->context.get(), descriptor);
 }
 
+void ModbusContext::select(const ModbusUnit& unit) {
+  impl_->unit = unit;
+  modbus_set_slave(impl_->context.get(), unit.unit_id);
+}
+
 Result<void> ModbusContext::read_registers(std::uint16_t first, std::span<std::uint16_t> into) {
   const int count = static_cast<int>(into.size());
-  return outcome(modbus_read_registers(impl_->context.get(), first, count, into.data()), count);
+  const auto read =
+      impl_->unit.reads == stage::ReadFunction::Input ? modbus_read_input_registers : modbus_read_registers;
+  return outcome(read(impl_->context.get(), first, count, into.data()), count);
 }
 
 Result<void> ModbusContext::write_registers(std::uint16_t first, std::span<const std::uint16_t> words) {
   const int count = static_cast<int>(words.size());
-  return outcome(count == 1 ? modbus_write_register(impl_->context.get(), first, words.front())
-                            : modbus_write_registers(impl_->context.get(), first, count, words.data()),
+  const bool is_single = count == 1 && impl_->unit.writes == stage::WriteFunction::Single;
+  return outcome(is_single ? modbus_write_register(impl_->context.get(), first, words.front())
+                           : modbus_write_registers(impl_->context.get(), first, count, words.data()),
                  count);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "drivers/links/modbus_unit.h"
 #include "drivers/links/serial_line.h"
 
 namespace gonio::drivers {
@@ -26,6 +27,8 @@ class ModbusContext {
   ~ModbusContext();
 
   void use_socket(int descriptor);
+  /// The transactions below are with this unit from now on, by its functions.
+  void select(const ModbusUnit& unit);
   /// Errors: TimedOut, BadReply, DeviceRefused, Unreachable.
   [[nodiscard]] Result<void> read_registers(std::uint16_t first, std::span<std::uint16_t> into);
   [[nodiscard]] Result<void> write_registers(std::uint16_t first, std::span<const std::uint16_t> words);

@@ -10,6 +10,7 @@ namespace gonio::drivers {
 namespace {
 
 constexpr std::uint8_t kRead = 0x03;
+constexpr std::uint8_t kReadInput = 0x04;
 constexpr std::uint8_t kWriteOne = 0x06;
 constexpr std::uint8_t kWriteSeveral = 0x10;
 constexpr std::uint8_t kWriteAndRead = 0x17;
@@ -52,20 +53,22 @@ Error bad_reply(std::string seen, std::string limit) {
 
 }  // namespace
 
-ModbusRequest read_request(std::uint16_t first, std::size_t count) {
-  ModbusRequest request{.pdu = {kRead}, .reply_begins = {kRead, bytes_of(count)}, .words_read = count};
+ModbusRequest read_request(std::uint16_t first, std::size_t count, stage::ReadFunction reads) {
+  const std::uint8_t function = reads == stage::ReadFunction::Input ? kReadInput : kRead;
+  ModbusRequest request{.pdu = {function}, .reply_begins = {function, bytes_of(count)}, .words_read = count};
   append(request.pdu, first);
   append(request.pdu, count);
   return request;
 }
 
-ModbusRequest write_request(std::uint16_t first, std::span<const std::uint16_t> words) {
+ModbusRequest write_request(std::uint16_t first, std::span<const std::uint16_t> words, stage::WriteFunction writes) {
+  const bool is_single = words.size() == 1 && writes == stage::WriteFunction::Single;
   ModbusRequest request;
-  request.pdu.push_back(words.size() == 1 ? kWriteOne : kWriteSeveral);
+  request.pdu.push_back(is_single ? kWriteOne : kWriteSeveral);
   append(request.pdu, first);
-  append(request.pdu, words.size() == 1 ? words.front() : words.size());
+  append(request.pdu, is_single ? words.front() : words.size());
   request.reply_begins = request.pdu;  // an echo
-  if (words.size() != 1) append_counted(request.pdu, words);
+  if (!is_single) append_counted(request.pdu, words);
   return request;
 }
 

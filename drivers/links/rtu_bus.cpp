@@ -17,6 +17,10 @@ Error turn_error(ErrorCode code, std::string seen) {
 
 RtuBus::RtuBus(RtuLineConfig config) : line_(std::move(config)) {}
 
+std::unique_ptr<ModbusLink> RtuBus::for_unit(Rank rank, const ModbusUnit& unit) {
+  return std::make_unique<Face>(*this, rank, unit);
+}
+
 bool RtuBus::may_begin(Rank rank) const {
   if (is_taken_) return false;
   for (std::size_t higher = static_cast<std::size_t>(rank) + 1; higher < waiting_.size(); ++higher) {
@@ -57,7 +61,8 @@ Result<void> RtuBus::Face::transact(std::string tried, const ModbusRequest& requ
     const auto gives_way = [&] {
       return is_interrupted_.exchange(false) || (!is_urgent && bus_.waiting(Rank::Urgent) > 0);
     };
-    done = bus_.line_.exchange(request, into, is_urgent ? RtuLine::Haste::Urgent : RtuLine::Haste::None, gives_way);
+    done = bus_.line_.exchange(unit_.unit_id, request, into, is_urgent ? RtuLine::Haste::Urgent : RtuLine::Haste::None,
+                               gives_way);
     bus_.give_turn();
   }
   if (done) return done;
@@ -67,11 +72,13 @@ Result<void> RtuBus::Face::transact(std::string tried, const ModbusRequest& requ
 }
 
 Result<void> RtuBus::Face::read_registers(std::uint16_t first, std::span<std::uint16_t> into) {
-  return transact(fmt::format("read {} registers from {}", into.size(), first), read_request(first, into.size()), into);
+  return transact(fmt::format("read {} registers from {}", into.size(), first),
+                  read_request(first, into.size(), unit_.reads), into);
 }
 
 Result<void> RtuBus::Face::write_registers(std::uint16_t first, std::span<const std::uint16_t> words) {
-  return transact(fmt::format("write {} registers from {}", words.size(), first), write_request(first, words), {});
+  return transact(fmt::format("write {} registers from {}", words.size(), first),
+                  write_request(first, words, unit_.writes), {});
 }
 
 Result<void> RtuBus::Face::write_and_read(std::uint16_t write_first, std::span<const std::uint16_t> words,

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
@@ -23,6 +24,8 @@ namespace gonio::drivers {
 /// A call waits for its turn for three exchanges at most, then fails with TimedOut.
 class RtuBus {
  public:
+  enum class Rank : std::uint8_t { Normal, Prompt, Urgent };
+
   explicit RtuBus(RtuLineConfig config);
   RtuBus(const RtuBus&) = delete;
   RtuBus& operator=(const RtuBus&) = delete;
@@ -30,13 +33,13 @@ class RtuBus {
   [[nodiscard]] ModbusLink& normal() { return normal_; }
   [[nodiscard]] ModbusLink& prompt() { return prompt_; }
   [[nodiscard]] ModbusLink& urgent() { return urgent_; }
+  /// A way of that rank to another unit on the line, for one thread; the bus must outlive it.
+  [[nodiscard]] std::unique_ptr<ModbusLink> for_unit(Rank rank, const ModbusUnit& unit);
 
  private:
-  enum class Rank : std::uint8_t { Normal, Prompt, Urgent };
-
   class Face final : public ModbusLink {
    public:
-    Face(RtuBus& bus, Rank rank) : bus_(bus), rank_(rank) {}
+    Face(RtuBus& bus, Rank rank, const ModbusUnit& unit) : bus_(bus), rank_(rank), unit_(unit) {}
     Result<void> read_registers(std::uint16_t first, std::span<std::uint16_t> into) override;
     Result<void> write_registers(std::uint16_t first, std::span<const std::uint16_t> words) override;
     Result<void> write_and_read(std::uint16_t write_first, std::span<const std::uint16_t> words,
@@ -49,6 +52,7 @@ class RtuBus {
     [[nodiscard]] Result<void> transact(std::string tried, const ModbusRequest& request, std::span<std::uint16_t> into);
     RtuBus& bus_;
     const Rank rank_;
+    const ModbusUnit unit_;
     std::atomic<bool> is_interrupted_{false};
     std::size_t last_reply_bytes_ = 0;
   };
@@ -63,9 +67,9 @@ class RtuBus {
   std::condition_variable changed_;
   bool is_taken_ = false;
   std::array<std::atomic<int>, 3> waiting_{};  ///< by rank; written under the mutex, read by who has the turn
-  Face normal_{*this, Rank::Normal};
-  Face prompt_{*this, Rank::Prompt};
-  Face urgent_{*this, Rank::Urgent};
+  Face normal_{*this, Rank::Normal, {.unit_id = line_.unit_id()}};
+  Face prompt_{*this, Rank::Prompt, {.unit_id = line_.unit_id()}};
+  Face urgent_{*this, Rank::Urgent, {.unit_id = line_.unit_id()}};
 };
 
 }  // namespace gonio::drivers

@@ -153,8 +153,9 @@ Result<void> RtuLine::settle(Haste haste, const GivesWay& gives_way) {
   }
 }
 
-Result<void> RtuLine::send(const ModbusRequest& request) {
-  std::vector<std::uint8_t> frame{config_.unit_id};
+Result<void> RtuLine::send(std::uint8_t unit, const ModbusRequest& request) {
+  context_.select({.unit_id = unit});
+  std::vector<std::uint8_t> frame{unit};
   frame.insert(frame.end(), request.pdu.begin(), request.pdu.end());
   if (auto sent = context_.send(frame); !sent) return broken(std::move(sent.error().seen));
   owe(reply_bytes(request));
@@ -183,11 +184,11 @@ Result<void> RtuLine::await_reply(std::size_t bytes, const GivesWay& gives_way) 
   }
 }
 
-Result<void> RtuLine::exchange(const ModbusRequest& request, std::span<std::uint16_t> into, Haste haste,
-                               const GivesWay& gives_way) {
+Result<void> RtuLine::exchange(std::uint8_t unit, const ModbusRequest& request, std::span<std::uint16_t> into,
+                               Haste haste, const GivesWay& gives_way) {
   GONIO_TRY(open());
   GONIO_TRY(settle(haste, gives_way));
-  GONIO_TRY(send(request));
+  GONIO_TRY(send(unit, request));
   GONIO_TRY(await_reply(reply_bytes(request), gives_way));
   auto reply = context_.receive();
   if (!reply && reply.error().code == ErrorCode::Unreachable) return broken(std::move(reply.error().seen));
@@ -195,9 +196,9 @@ Result<void> RtuLine::exchange(const ModbusRequest& request, std::span<std::uint
     if (reply.error().code == ErrorCode::TimedOut) reply.error().seen = "no complete reply";
     return failure(std::move(reply).error());
   }
-  if (reply->front() != config_.unit_id) {
-    return failure(plain(ErrorCode::BadReply, fmt::format("a frame of unit {}", reply->front()),
-                         fmt::format("unit {}", config_.unit_id)));
+  if (reply->front() != unit) {
+    return failure(
+        plain(ErrorCode::BadReply, fmt::format("a frame of unit {}", reply->front()), fmt::format("unit {}", unit)));
   }
   Result<void> taken = take_reply(request, std::span(*reply).subspan(1), into);
   stirred_ = clock_.now();

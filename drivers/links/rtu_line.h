@@ -17,7 +17,7 @@ namespace gonio::drivers {
 
 struct RtuLineConfig {
   SerialLine line;
-  std::uint8_t unit_id = 1;
+  std::uint8_t unit_id = 1;  ///< of the ways that name none
   Duration reply_timeout{};  ///< of one transaction; also how long a line must be quiet after an error
   /// The longest stop inside a reply: USB adapters hand bytes on in lumps up to 16 ms apart.
   Duration pause = std::chrono::milliseconds(20);
@@ -47,8 +47,8 @@ class RtuLine {
   RtuLine& operator=(const RtuLine&) = delete;
 
   /// Errors, with code, seen and limit only: as ModbusLink; Unreachable also when it gave way.
-  [[nodiscard]] Result<void> exchange(const ModbusRequest& request, std::span<std::uint16_t> into, Haste haste,
-                                      const GivesWay& gives_way);
+  [[nodiscard]] Result<void> exchange(std::uint8_t unit, const ModbusRequest& request, std::span<std::uint16_t> into,
+                                      Haste haste, const GivesWay& gives_way);
   /// A reply of so many bytes may still come. Threads: any.
   void owe(std::size_t bytes) { owed_ += bytes; }
   /// Of a reply on the line, whole.
@@ -58,13 +58,14 @@ class RtuLine {
 
   /// The longest that one exchange can take.
   [[nodiscard]] Duration longest_exchange() const;
+  [[nodiscard]] std::uint8_t unit_id() const { return config_.unit_id; }
 
  private:
   [[nodiscard]] Result<void> open();
   void close();
   [[nodiscard]] Result<void> settle(Haste haste, const GivesWay& gives_way);
   void settle_debt(std::size_t bytes);
-  [[nodiscard]] Result<void> send(const ModbusRequest& request);
+  [[nodiscard]] Result<void> send(std::uint8_t unit, const ModbusRequest& request);
   [[nodiscard]] Result<void> await_reply(std::size_t bytes, const GivesWay& gives_way);
   [[nodiscard]] Result<void> wait(Instant until, bool for_bytes, const GivesWay& gives_way);
   [[nodiscard]] Result<std::size_t> waiting_bytes();

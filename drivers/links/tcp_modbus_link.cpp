@@ -40,10 +40,11 @@ struct TcpModbusLink::Impl {
     is_connected = false;
   }
 
-  // Runs one transaction of the context's.
+  // Runs one transaction of the context's with a unit.
   template <class Call>
-  Result<void> transact(std::string tried, Call call) {
+  Result<void> transact(const ModbusUnit& unit, std::string tried, Call call) {
     GONIO_TRY(ensure_connected());
+    context.select(unit);
     Result<void> done = call(context);
     if (done) return done;
     Error& error = done.error();
@@ -57,6 +58,11 @@ struct TcpModbusLink::Impl {
     return done;
   }
 
+  void interrupt() {
+    const std::lock_guard lock(socket_mutex);
+    if (socket.descriptor() >= 0) ::shutdown(socket.descriptor(), SHUT_RDWR);
+  }
+
   TcpModbusConfig config;
   ModbusContext context;
   std::mutex socket_mutex;  ///< guards the descriptor's life against `interrupt`
@@ -64,33 +70,63 @@ struct TcpModbusLink::Impl {
   bool is_connected = false;
 };
 
-TcpModbusLink::TcpModbusLink(TcpModbusConfig config) : impl_(std::make_unique<Impl>(std::move(config))) {}
+/// One unit over the connection of a link.
+class TcpModbusLink::Face final : public ModbusLink {
+ public:
+  Face(Impl& impl, const ModbusUnit& unit) : impl_(impl), unit_(unit) {}
+
+  Result<void> read_registers(std::uint16_t first, std::span<std::uint16_t> into) override {
+    return impl_.transact(unit_, fmt::format("read {} registers from {}", into.size(), first),
+                          [&](ModbusContext& context) { return context.read_registers(first, into); });
+  }
+  Result<void> write_registers(std::uint16_t first, std::span<const std::uint16_t> words) override {
+    return impl_.transact(unit_, fmt::format("write {} registers from {}", words.size(), first),
+                          [&](ModbusContext& context) { return context.write_registers(first, words); });
+  }
+  Result<void> write_and_read(std::uint16_t write_first, std::span<const std::uint16_t> words, std::uint16_t read_first,
+                              std::span<std::uint16_t> into) override {
+    return impl_.transact(
+        unit_,
+        fmt::format("write {} registers from {} and read {} from {}", words.size(), write_first, into.size(),
+                    read_first),
+        [&](ModbusContext& context) { return context.write_and_read(write_first, words, read_first, into); });
+  }
+  void resync() override { impl_.close(); }
+  void interrupt() override { impl_.interrupt(); }
+
+ private:
+  Impl& impl_;
+  const ModbusUnit unit_;
+};
+
+TcpModbusLink::TcpModbusLink(TcpModbusConfig config)
+    : impl_(std::make_unique<Impl>(std::move(config))),
+      own_(std::make_unique<Face>(*impl_, ModbusUnit{.unit_id = impl_->config.unit_id})) {}
 TcpModbusLink::~TcpModbusLink() = default;
 
 Result<void> TcpModbusLink::read_registers(std::uint16_t first, std::span<std::uint16_t> into) {
-  return impl_->transact(fmt::format("read {} registers from {}", into.size(), first),
-                         [&](ModbusContext& context) { return context.read_registers(first, into); });
+  return own_->read_registers(first, into);
 }
 
 Result<void> TcpModbusLink::write_registers(std::uint16_t first, std::span<const std::uint16_t> words) {
-  return impl_->transact(fmt::format("write {} registers from {}", words.size(), first),
-                         [&](ModbusContext& context) { return context.write_registers(first, words); });
+  return own_->write_registers(first, words);
 }
 
 Result<void> TcpModbusLink::write_and_read(std::uint16_t write_first, std::span<const std::uint16_t> words,
                                            std::uint16_t read_first, std::span<std::uint16_t> into) {
-  return impl_->transact(
-      fmt::format("write {} registers from {} and read {} from {}", words.size(), write_first, into.size(), read_first),
-      [&](ModbusContext& context) { return context.write_and_read(write_first, words, read_first, into); });
+  return own_->write_and_read(write_first, words, read_first, into);
 }
 
 void TcpModbusLink::resync() {
-  impl_->close();
+  own_->resync();
 }
 
 void TcpModbusLink::interrupt() {
-  const std::lock_guard lock(impl_->socket_mutex);
-  if (impl_->socket.descriptor() >= 0) ::shutdown(impl_->socket.descriptor(), SHUT_RDWR);
+  own_->interrupt();
+}
+
+std::unique_ptr<ModbusLink> TcpModbusLink::for_unit(const ModbusUnit& unit) {
+  return std::make_unique<Face>(*impl_, unit);
 }
 
 }  // namespace gonio::drivers

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "drivers/links/modbus_link.h"
+#include "drivers/links/modbus_unit.h"
 
 namespace gonio::drivers {
 
@@ -32,9 +33,15 @@ class TcpModbusLink final : public ModbusLink {
   void resync() override;
   void interrupt() override;
 
+  /// A way to another unit over the same connection, as a gateway or a line of drives behind one has them: for the
+  /// thread that owns this link, which must outlive it. `resync` and `interrupt` are those of the connection.
+  [[nodiscard]] std::unique_ptr<ModbusLink> for_unit(const ModbusUnit& unit);
+
  private:
+  class Face;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::unique_ptr<ModbusLink> own_;  ///< the configuration's unit
 };
 
 }  // namespace gonio::drivers

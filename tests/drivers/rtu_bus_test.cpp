@@ -65,6 +65,38 @@ TEST(RtuBus, ReadsHoldingRegistersAsTheStandardPrintsIt) {
   EXPECT_EQ(peer.requests().at(0), bytes("11 03 00 6b 00 03 76 87"));
 }
 
+TEST(RtuBus, SpeaksToSeveralUnitsByTheFunctionsOfEach) {
+  ScriptedRtuPeer peer([](const Bytes& request, std::size_t) {
+    if (request[0] == 5) return with_crc(bytes("05 04 02 00 0a"));
+    return with_crc(bytes("06 10 00 01 00 01"));
+  });
+  RtuBus bus(config(peer.device(), kPatience));
+  const auto five = bus.for_unit(RtuBus::Rank::Normal, {.unit_id = 5, .reads = stage::ReadFunction::Input});
+  const auto six = bus.for_unit(RtuBus::Rank::Urgent, {.unit_id = 6, .writes = stage::WriteFunction::Multiple});
+  std::array<std::uint16_t, 1> word{};
+
+  const auto read = five->read_registers(8, word);
+  const auto wrote = six->write_registers(1, std::array<std::uint16_t, 1>{3});
+
+  ASSERT_TRUE(read) << describe(read.error());
+  ASSERT_TRUE(wrote) << describe(wrote.error());
+  EXPECT_EQ(word[0], 0x000A);
+  EXPECT_EQ(peer.requests().at(0), with_crc(bytes("05 04 00 08 00 01")));
+  EXPECT_EQ(peer.requests().at(1), with_crc(bytes("06 10 00 01 00 01 02 00 03")));
+}
+
+TEST(RtuBus, TakesNoUnitsReplyForAnothers) {
+  ScriptedRtuPeer peer([](const Bytes&, std::size_t) { return with_crc(bytes("05 03 02 00 07")); });
+  RtuBus bus(config(peer.device(), kShort));
+  const auto six = bus.for_unit(RtuBus::Rank::Normal, {.unit_id = 6});
+  std::array<std::uint16_t, 1> word{};
+
+  const auto read = six->read_registers(0, word);
+
+  ASSERT_FALSE(read.has_value());
+  EXPECT_EQ(word[0], 0);
+}
+
 TEST(RtuBus, WritesOneRegisterAsTheStandardPrintsIt) {
   ScriptedRtuPeer peer(always("11 06 00 01 00 03 9a 9b"));
   RtuBus bus(config(peer.device(), kPatience));

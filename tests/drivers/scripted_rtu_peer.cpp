@@ -15,7 +15,7 @@ namespace {
 // Of the functions that the stage uses: 3, 6, 16, 23. 0: not known yet.
 std::size_t length_of(const Bytes& begin) {
   if (begin.size() < 2) return 0;
-  if (begin[1] == 3 || begin[1] == 6) return 8;
+  if (begin[1] == 3 || begin[1] == 4 || begin[1] == 6) return 8;
   const std::size_t count_at = begin[1] == 16 ? 6 : 10;
   return begin.size() > count_at ? count_at + 1 + begin[count_at] + 2 : 0;
 }

@@ -57,6 +57,38 @@ TEST(TcpModbusLink, ReadsHoldingRegistersAsTheStandardPrintsIt) {
   EXPECT_EQ(without_transaction(server.requests().at(0)), bytes("00 00 00 06 11 03 00 6b 00 03"));
 }
 
+TEST(TcpModbusLink, ReadsInputRegistersOfAnotherUnitOverTheSameConnectionAsTheStandardPrintsIt) {
+  ScriptedModbusServer server([](const Bytes& request, int) {
+    return Answer{reply_to(request, bytes(request[7] == 0x04 ? "04 02 00 0a" : "03 02 00 07"))};
+  });
+  TcpModbusLink link(config(server.port(), kPatience));
+  const auto other = link.for_unit({.unit_id = 5, .reads = stage::ReadFunction::Input});
+  std::array<std::uint16_t, 1> own_word{};
+  std::array<std::uint16_t, 1> word{};
+
+  const auto own = link.read_registers(8, own_word);
+  const auto done = other->read_registers(8, word);
+
+  ASSERT_TRUE(own && done);
+  EXPECT_EQ(own_word[0], 7);
+  EXPECT_EQ(word[0], 0x000A);
+  EXPECT_EQ(without_transaction(server.requests().at(0)), bytes("00 00 00 06 11 03 00 08 00 01"));
+  EXPECT_EQ(without_transaction(server.requests().at(1)), bytes("00 00 00 06 05 04 00 08 00 01"));
+  EXPECT_EQ(server.connections(), 1);
+}
+
+TEST(TcpModbusLink, WritesOneRegisterByTheFunctionForSeveralWhereTheUnitWantsIt) {
+  ScriptedModbusServer server(always("10 00 01 00 01"));
+  TcpModbusLink link(config(server.port(), kPatience));
+  const auto unit = link.for_unit({.unit_id = 5, .writes = stage::WriteFunction::Multiple});
+  const std::array<std::uint16_t, 1> words{3};
+
+  const auto done = unit->write_registers(1, words);
+
+  ASSERT_TRUE(done) << describe(done.error());
+  EXPECT_EQ(without_transaction(server.requests().at(0)), bytes("00 00 00 09 05 10 00 01 00 01 02 00 03"));
+}
+
 TEST(TcpModbusLink, WritesOneRegisterAsTheStandardPrintsIt) {
   ScriptedModbusServer server(always("06 00 01 00 03"));
   TcpModbusLink link(config(server.port(), kPatience));
