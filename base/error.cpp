@@ -107,6 +107,9 @@ constexpr std::array kTable{
                 "Make room; then resume."},
     ErrorTraits{Busy, "busy", 503, 1, Retry::Again, "Too much is asked for at once", "Nothing was changed.",
                 "Try again in a moment."},
+    ErrorTraits{ReplayDiffers, "replay-differs", 409, 1, Retry::Never, "The program does not do what the tape has",
+                "The recording and its store are untouched; the replay's store ends here.",
+                "Compare the version, the instrument's file and the record that is named."},
     ErrorTraits{Internal, "internal", 500, 1, Retry::Never, "The program broke a promise of its own", kItemKept,
                 "Please report it, with the log."},
 };

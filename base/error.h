@@ -61,6 +61,7 @@ enum class ErrorCode : std::uint8_t {
   StoreFailed,
   DiskFull,
   Busy,
+  ReplayDiffers,
   Internal,
 };
 
