@@ -65,6 +65,13 @@ struct StageState {
   GateRecord gate{};
 };
 
+/// Where the axes stand in a look.
+[[nodiscard]] inline stage::PerAxis<double> positions_of(const StageState& state) {
+  stage::PerAxis<double> positions{};
+  for (std::size_t a = 0; a < positions.size(); ++a) positions[a] = state.axes[a].position;
+  return positions;
+}
+
 /// A goniometer stage: arms, sample azimuth, carriage, filter wheel, shutters, and the lamp monitor and sensors on its
 /// bus. Nothing here waits for motion: each call is at most a few link transactions, each with a deadline. Waiting is
 /// `MoveTask`'s (drivers/motion): a pure state machine that is shown `StageState`s.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/clock.h"
+#include "drivers/kinematics/kinematics_config.h"
 #include "protocol/stage/axis.h"
 #include "protocol/stage/register_map.h"
 
@@ -21,6 +22,7 @@ struct AxisConfig {
 struct StageConfig {
   stage::RegisterMap registers;
   stage::PerAxis<AxisConfig> axes{};
+  KinematicsConfig kinematics;   ///< how axes make directions
   Duration reply_timeout{};      ///< of one exchange on the wire
   Duration homing_time{};        ///< the longest that homing may take
   Duration shutter_time{};       ///< the longest that a shutter may take

@@ -12,6 +12,7 @@
 
 #include "base/toml_reader.h"
 #include "daemon/config/configuration_hash.h"
+#include "daemon/config/kinematics_section.h"
 
 namespace gonio::daemon {
 namespace {
@@ -70,6 +71,7 @@ drivers::StageConfig read_stage_config(TomlReader& table) {
     TomlReader one = axes.table(stage::axis_name(axis));
     stage.axes[stage::index_of(axis)] = read_axis(one, stage::axis_unit(axis));
   }
+  read_kinematics(table, stage);
   TomlReader registers = table.table("registers");
   stage.registers = stage::read_register_map(registers);
   return stage;

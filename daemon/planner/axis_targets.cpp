@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/planner/planner.h"
+#include "drivers/kinematics/kinematics.h"
 
 namespace gonio::daemon {
 
@@ -33,16 +34,6 @@ Result<double> within_limits(const Instrument& instrument, Axis axis, double pos
   return std::clamp(position, config.low, config.high);
 }
 
-// The same azimuth by whole turns: as asked if it can be, else the nearest turn within the limits.
-Result<double> azimuth_within_limits(const Instrument& instrument, Axis axis, double position) {
-  const auto& config = instrument.stage.axis(axis);
-  for (const double turns : {0.0, -1.0, 1.0, -2.0, 2.0}) {
-    const double turned = position + 360.0 * turns;
-    if (is_within(config, turned)) return std::clamp(turned, config.low, config.high);
-  }
-  return failure(beyond_limit(axis, config, position));
-}
-
 Result<double> filter_slot(const Instrument& instrument, Wavelength wavelength) {
   if (const Filter* filter = filter_for(instrument, wavelength)) return static_cast<double>(filter->slot);
   std::string known;
@@ -64,18 +55,23 @@ bool is_in_shadow(const Geometry& g, const Shadow& shadow) {
   return phase_angle(g).si() < std::asin(std::min(1.0, reach));
 }
 
-Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelength, const Instrument& instrument) {
-  drivers::MotionTarget target{};
-  const auto put = [&target](Axis axis, const Result<double>& position) -> Result<void> {
-    if (!position) return failure(position.error());
-    target[stage::index_of(axis)] = *position;
-    return {};
-  };
-  GONIO_TRY(put(Axis::ThetaI, within_limits(instrument, Axis::ThetaI, in_degrees(g.theta_i))));
-  GONIO_TRY(put(Axis::ThetaR, within_limits(instrument, Axis::ThetaR, in_degrees(g.theta_r))));
-  GONIO_TRY(put(Axis::PhiR, azimuth_within_limits(instrument, Axis::PhiR, in_degrees(g.phi_r))));
-  GONIO_TRY(put(Axis::PhiI, azimuth_within_limits(instrument, Axis::PhiI, in_degrees(g.phi_i))));
-  GONIO_TRY(put(Axis::FilterWheel, filter_slot(instrument, wavelength)));
+stage::PerAxis<double> home_position(const Instrument& instrument) {
+  stage::PerAxis<double> home{};
+  for (const Axis axis : stage::kAllAxes) {
+    const auto& config = instrument.stage.axis(axis);
+    home[stage::index_of(axis)] = std::clamp(0.0, config.low, config.high);
+  }
+  return home;
+}
+
+Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelength, const Instrument& instrument,
+                                           const stage::PerAxis<double>& standing) {
+  const auto ways = drivers::solutions(g, instrument.stage, standing);
+  if (!ways) return failure(ways.error());
+  const auto slot = filter_slot(instrument, wavelength);
+  if (!slot) return failure(slot.error());
+  drivers::MotionTarget target = ways->front();
+  target[stage::index_of(Axis::FilterWheel)] = *slot;
   return target;
 }
 
@@ -97,10 +93,7 @@ Result<void> check_move(const drivers::MotionTarget& target, const stage::PerAxi
     there[stage::index_of(axis)] = *allowed;
   }
   const bool arms_move = target[0] || target[1] || target[2] || target[3];
-  const Geometry g{.theta_i = degrees(there[stage::index_of(Axis::ThetaI)]),
-                   .phi_i = degrees(there[stage::index_of(Axis::PhiI)]),
-                   .theta_r = degrees(there[stage::index_of(Axis::ThetaR)]),
-                   .phi_r = degrees(there[stage::index_of(Axis::PhiR)])};
+  const Geometry g = drivers::directions(instrument.stage.kinematics, there);
   if (!arms_move || !is_in_shadow(g, instrument.shadow)) return {};
   const double xi_deg = in_degrees(phase_angle(g));
   return failure(Error{.code = ErrorCode::Blocked,

@@ -21,11 +21,8 @@ constexpr int kDarkFrames = 4;  // of each rung, in the estimate
 
 class Walk {
  public:
-  Walk(const api::Plan& plan, const Instrument& instrument) : plan_(plan), instrument_(instrument) {
-    for (const Axis axis : stage::kAllAxes) {
-      const auto& config = instrument.stage.axis(axis);
-      standing_[stage::index_of(axis)] = std::clamp(0.0, config.low, config.high);
-    }
+  Walk(const api::Plan& plan, const Instrument& instrument)
+      : plan_(plan), instrument_(instrument), standing_(home_position(instrument)) {
     const std::vector<Duration> ladder = exposure_ladder(instrument.detector, plan.max_time);
     exposure_ = seconds(std::sqrt(in_seconds(ladder.front()) * in_seconds(ladder.back())));
     if (!plan.exposures.empty()) {
@@ -38,7 +35,7 @@ class Walk {
   }
 
   void visit(const ScanPoint& point, Length carriage) {
-    auto target = axis_targets(point.geometry, point.wavelength, instrument_);
+    auto target = axis_targets(point.geometry, point.wavelength, instrument_, standing_);
     assert(target);  // the planner has checked every direction
     (*target)[stage::index_of(Axis::Carriage)] = in_millimetres(carriage);
     const StepTime step = step_time(instrument_, standing_, *target);
@@ -61,7 +58,7 @@ class Walk {
  private:
   const api::Plan& plan_;
   const Instrument& instrument_;
-  stage::PerAxis<double> standing_{};
+  stage::PerAxis<double> standing_;
   Duration exposure_{};
   Duration dark_exposures_{};
   int rungs_ = 1;

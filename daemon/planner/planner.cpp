@@ -105,20 +105,29 @@ class Expansion {
                                  .theta_r = plan_.theta_r[place[2]],
                                  .phi_r = plan_.phi_r[place[3]] + (plan_.isotropic ? phi_i : Angle{})},
                     .wavelength = plan_.wavelengths[place[4]]};
-    const auto target = axis_targets(point.geometry, point.wavelength, instrument_);
-    if (!target) return failure(named_by_the_plan(target.error()));
+    const auto target = axis_targets(point.geometry, point.wavelength, instrument_, home_);
+    if (!target) return failure(named_by_the_plan(target.error(), point.geometry));
     point.blocked = is_in_shadow(point.geometry, instrument_.shadow);
     planned_.points.push_back(point);
     places_.push_back(place);
     return {};
   }
 
-  // The instrument's error, with the field of the plan that asked for it.
-  static Error named_by_the_plan(Error error) {
+  // The instrument's error, with the field of the plan that asked for it; where no axis is one of the plan's angles,
+  // with the direction.
+  [[nodiscard]] Error named_by_the_plan(Error error, const Geometry& g) const {
     std::string field = "geometry.wavelength_nm";
-    for (const auto axis : {stage::Axis::ThetaI, stage::Axis::ThetaR, stage::Axis::PhiR, stage::Axis::PhiI}) {
-      const std::string name(stage::axis_name(axis));
-      if (error.tried.find("move " + name + " ") == 0) field = "geometry." + name + "_deg";
+    const bool is_direction = error.code == ErrorCode::OutOfLimits;
+    if (is_direction && instrument_.stage.kinematics.kind != drivers::KinematicsKind::Arms) {
+      field = "geometry";
+      error.tried +=
+          fmt::format(" for theta_i {:.3f}, phi_i {:.3f}, theta_r {:.3f}, phi_r {:.3f} deg", in_degrees(g.theta_i),
+                      in_degrees(g.phi_i), in_degrees(g.theta_r), in_degrees(g.phi_r));
+    } else if (is_direction) {
+      for (const auto axis : {stage::Axis::ThetaI, stage::Axis::ThetaR, stage::Axis::PhiR, stage::Axis::PhiI}) {
+        const std::string name(stage::axis_name(axis));
+        if (error.tried.find("move " + name + " ") == 0) field = "geometry." + name + "_deg";
+      }
     }
     error.device = "plan";
     error.where = InputLocation{.field = std::move(field)};
@@ -150,6 +159,7 @@ class Expansion {
 
   const api::Plan& plan_;
   const Instrument& instrument_;
+  const stage::PerAxis<double> home_ = home_position(instrument_);
   std::array<std::vector<std::uint32_t>, kPlanListCount> first_;
   GridPlace sizes_{};
   PlannedScan planned_;

@@ -19,10 +19,14 @@ inline constexpr int kPlannerVersion = 1;
 /// Whether the detector's head stands in the source's beam: xi < asin((r_d + r_s) / min(R_d, R_s)).
 [[nodiscard]] bool is_in_shadow(const Geometry& g, const Shadow& shadow);
 
-/// Where the axes of a point stand: the four angles, with phi by whole turns into its axis' limits, and the filter.
-/// Errors: OutOfLimits, InvalidInput (no filter).
+/// Where the axes stand after homing, as the dry run takes it: at zero, or at the limit nearest to it.
+[[nodiscard]] stage::PerAxis<double> home_position(const Instrument& instrument);
+
+/// Where the axes of a point go from `standing`: the turning axes by the stage's kinematics, the soonest of all ways
+/// within the limits, and the filter. Errors: OutOfLimits, InvalidInput (no filter).
 [[nodiscard]] Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelength,
-                                                         const Instrument& instrument);
+                                                         const Instrument& instrument,
+                                                         const stage::PerAxis<double>& standing);
 
 /// Checks one move asked for by hand from where the stage stands. Errors: OutOfLimits, Blocked (it would end in the
 /// shadow).

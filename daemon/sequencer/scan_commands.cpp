@@ -215,9 +215,7 @@ void Sequencer::Impl::on_hand_look(const Result<drivers::StageState>& state) {
     return ask_stage(StageUse::HandDone, gonio::daemon::Home{.epoch = epoch});
   }
   const auto& move = std::get<MoveStage>(by_hand->verb);
-  stage::PerAxis<double> standing{};
-  for (std::size_t a = 0; a < standing.size(); ++a) standing[a] = state->axes[a].position;
-  const auto allowed = check_move(move.target, standing, config.instrument);
+  const auto allowed = check_move(move.target, positions_of(*state), config.instrument);
   if (!allowed) return end_by_hand(failure(allowed.error()));
   ask_stage(StageUse::HandDone, MoveTo{.epoch = epoch,
                                        .target = move.target,

@@ -56,7 +56,8 @@ ReadingRecord reading_from(const FrameSummary& frame, const drivers::StageState&
 
 void Sequencer::Impl::start_item(const ItemKey& item, Instant now) {
   const ScanPoint& point = scan->points[static_cast<std::size_t>(item.point)];
-  auto target = axis_targets(point.geometry, point.wavelength, config.instrument);
+  auto target = axis_targets(point.geometry, point.wavelength, config.instrument,
+                             stage ? positions_of(*stage) : home_position(config.instrument));
   scan->job = Job{.kind = Job::Kind::Item, .item = item, .started = now};
   if (!target) return job_failed(target.error(), now);
   const CarriagePositions& carriage = config.instrument.carriage;

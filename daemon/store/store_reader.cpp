@@ -9,6 +9,7 @@
 #include "daemon/store/database.h"
 #include "daemon/store/schema.h"
 #include "daemon/store/unfinished_scans.h"
+#include "drivers/kinematics/kinematics.h"
 
 namespace gonio::daemon {
 
@@ -41,18 +42,21 @@ struct ReadingRow {
   RawFrame frame;
 };
 
-Geometry geometry_from_counts(const Statement& row, int first, const drivers::StageConfig& stage) {
-  const auto angle = [&](Axis axis) {
-    return degrees(drivers::position_of(stage, axis, row.integer(first + static_cast<int>(stage::index_of(axis)))));
-  };
-  return {.theta_i = angle(Axis::ThetaI),
-          .phi_i = angle(Axis::PhiI),
-          .theta_r = angle(Axis::ThetaR),
-          .phi_r = angle(Axis::PhiR)};
+// Where the point is known, the azimuths are given near its own; a dark's directions mean nothing.
+Geometry geometry_from_counts(const Statement& row, int first, const drivers::StageConfig& stage,
+                              const Geometry* planned) {
+  stage::PerAxis<double> positions{};
+  for (const Axis axis : stage::kAllAxes) {
+    const std::size_t a = stage::index_of(axis);
+    positions[a] = drivers::position_of(stage, axis, row.integer(first + static_cast<int>(a)));
+  }
+  if (planned == nullptr) return drivers::directions(stage.kinematics, positions);
+  return drivers::directions_near(stage.kinematics, positions, *planned);
 }
 
 // Columns as in the query of `readings`.
 ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& stage,
+                            const std::vector<calibration::PlannedPoint>& points,
                             const std::map<std::int64_t, std::int64_t>& scale_of_run) {
   ReadingRow reading;
   const bool is_visit = row.is_null(1);
@@ -74,8 +78,9 @@ ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& st
   reading.frame.monitor_mean = row.real(16);
   reading.frame.monitor_se = row.real(17);
   reading.frame.detector_temperature_c = row.real(18);
-  reading.frame.at_open = geometry_from_counts(row, 19, stage);
-  reading.frame.at_close = geometry_from_counts(row, 25, stage);
+  const Geometry* planned = is_visit ? nullptr : &points.at(static_cast<std::size_t>(*reading.point)).geometry;
+  reading.frame.at_open = geometry_from_counts(row, 19, stage, planned);
+  reading.frame.at_close = geometry_from_counts(row, 25, stage, planned);
   return reading;
 }
 
@@ -174,7 +179,7 @@ class SqliteStoreReader final : public StoreReader {
       for (const ScanPoint& point : read_points(*database_, id, -1, std::numeric_limits<std::int64_t>::max())) {
         all.points.push_back({.index = point.index, .geometry = point.geometry, .wavelength = point.wavelength});
       }
-      all.readings = collect_readings(id, stage);
+      all.readings = collect_readings(id, stage, all.points);
       return std::pair(true, std::move(all));
     });
     if (!found) return failure(found.error());
@@ -321,7 +326,8 @@ class SqliteStoreReader final : public StoreReader {
     return scale_of_run;
   }
 
-  std::vector<RawReading> collect_readings(ScanId id, const drivers::StageConfig& stage) {
+  std::vector<RawReading> collect_readings(ScanId id, const drivers::StageConfig& stage,
+                                           const std::vector<calibration::PlannedPoint>& points) {
     const auto scales = time_scales();
     ReadingCollector collector;
     // Sorted by row: the order of the commits, and within one the order of the exposures.
@@ -338,7 +344,7 @@ class SqliteStoreReader final : public StoreReader {
         "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, NULL, NULL, NULL FROM visit v "
         "JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) WHERE used = 1 ORDER BY reading_id");
     query.bind(id);
-    while (query.next()) collector.add(reading_from_row(query, stage, scales));
+    while (query.next()) collector.add(reading_from_row(query, stage, points, scales));
     return collector.take();
   }
 

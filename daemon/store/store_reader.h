@@ -85,7 +85,8 @@ class StoreReader {
   [[nodiscard]] virtual Result<ScanTexts> texts(ScanId id) = 0;
   /// Points with index > `after` (-1: from the first).
   [[nodiscard]] virtual Result<std::vector<PointInfo>> points(ScanId id, std::int32_t after, int at_most) = 0;
-  /// Accepted attempts and all dark visits in time order; encoder counts become angles by `stage`. Frames of one
+  /// Accepted attempts and all dark visits in time order; encoder counts become directions by the
+  /// kinematics of `stage`, each phi within half a turn of the planned one. Frames of one
   /// attempt or visit at one exposure are one RawReading; its visit_id is 2 * attempt or 2 * visit + 1.
   [[nodiscard]] virtual Result<calibration::ScanReadings> readings(ScanId id, const drivers::StageConfig& stage) = 0;
   /// Events with number > `after`, in order; `scan` = 0: of all.

@@ -57,6 +57,30 @@ Error error_of(std::string_view old_text, std::string_view new_text) {
   return instrument ? Error{} : instrument.error();
 }
 
+TEST(Instrument, HasArmsUnlessItNamesOtherKinematics) {
+  const std::string turning =
+      "\n[stage.kinematics]\nkind = \"turning-sample\"\nyaw = \"phi_i\"\npitch = \"theta_i\"\nroll = \"phi_r\"\n"
+      "detector_arm = \"theta_r\"\nsource_elevation_deg = 5.0\n";
+
+  const Instrument arms = read(whole_text());
+  const Instrument sample = read(with(whole_text(), "\n[stage.carriage]", turning + "\n[stage.carriage]"));
+
+  EXPECT_EQ(arms.stage.kinematics.kind, drivers::KinematicsKind::Arms);
+  EXPECT_EQ(sample.stage.kinematics.kind, drivers::KinematicsKind::TurningSample);
+  EXPECT_EQ(sample.stage.kinematics.turning.yaw, stage::Axis::PhiI);
+  EXPECT_EQ(sample.stage.kinematics.turning.detector_arm, stage::Axis::ThetaR);
+  EXPECT_DOUBLE_EQ(in_degrees(sample.stage.kinematics.turning.source_elevation), 5.0);
+}
+
+TEST(Instrument, RefusesAnAxisThatTurnsTwoThings) {
+  const Error error = error_of("\n[stage.carriage]",
+                               "\n[stage.kinematics]\nkind = \"turning-sample\"\nyaw = \"phi_i\"\npitch = \"phi_i\"\n"
+                               "roll = \"phi_r\"\ndetector_arm = \"theta_r\"\n[stage.carriage]");
+
+  EXPECT_EQ(error.code, ErrorCode::InvalidInput);
+  EXPECT_THAT(error.seen, HasSubstr("phi_i turns something else already"));
+}
+
 TEST(Instrument, IsReadWholeFromThePackagedExample) {
   const Instrument instrument = read(whole_text());
 

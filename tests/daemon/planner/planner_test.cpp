@@ -117,7 +117,7 @@ TEST(Planner, RefusesMorePointsThanAnyScanCanHave) {
 TEST(Planner, TurnsAnAzimuthIntoItsAxis) {
   const Geometry g{.theta_i = degrees(30), .theta_r = degrees(10), .phi_r = degrees(345)};
 
-  const auto target = axis_targets(g, nanometres(568), bench_instrument());
+  const auto target = axis_targets(g, nanometres(568), bench_instrument(), {});
 
   ASSERT_TRUE(target);
   EXPECT_NEAR(*(*target)[stage::index_of(Axis::PhiR)], -15.0, 1e-9);
