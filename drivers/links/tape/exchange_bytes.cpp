@@ -101,6 +101,8 @@ std::vector<std::uint8_t> bytes_of(const CameraFormat& format) {
   return ByteWriter()
       .i64(format.width)
       .i64(format.height)
+      .i64(format.offset_x)
+      .i64(format.offset_y)
       .text(format.pixel_format)
       .i64(format.packet_size_bytes)
       .take();
@@ -111,6 +113,8 @@ Result<CameraFormat> read_format(std::span<const std::uint8_t> reply) {
   CameraFormat format;
   format.width = static_cast<int>(in.i64());
   format.height = static_cast<int>(in.i64());
+  format.offset_x = static_cast<int>(in.i64());
+  format.offset_y = static_cast<int>(in.i64());
   format.pixel_format = in.text();
   format.packet_size_bytes = static_cast<int>(in.i64());
   if (!in.is_done()) return not_that("a format");
@@ -129,15 +133,17 @@ Result<ExposureSettings> read_exposure(std::span<const std::uint8_t> reply) {
   return settings;
 }
 
-std::vector<std::uint8_t> bytes_of(double value) {
-  return ByteWriter().f64(value).take();
+std::vector<std::uint8_t> bytes_of(const std::optional<double>& value) {
+  if (!value) return {};
+  return ByteWriter().f64(*value).take();
 }
 
-Result<double> read_number(std::span<const std::uint8_t> reply) {
+Result<std::optional<double>> read_number(std::span<const std::uint8_t> reply) {
+  if (reply.empty()) return std::optional<double>();
   ByteReader in(reply);
   const double value = in.f64();
   if (!in.is_done()) return not_that("a number");
-  return value;
+  return std::optional<double>(value);
 }
 
 std::vector<std::uint8_t> bytes_of(bool value) {
@@ -212,8 +218,8 @@ std::string in_words(TapeCall call, std::span<const std::uint8_t> request) {
       return name;
     case TapeCall::CameraSetFormat:
       if (const auto format = read_format(request)) {
-        return fmt::format("{} to {} x {} px, {}, packets of {} bytes", name, format->width, format->height,
-                           format->pixel_format, format->packet_size_bytes);
+        return fmt::format("{} to {} x {} px at ({}, {}), {}, packets of {} bytes", name, format->width, format->height,
+                           format->offset_x, format->offset_y, format->pixel_format, format->packet_size_bytes);
       }
       return name;
     case TapeCall::UsbBulkOut:

@@ -30,8 +30,9 @@ namespace gonio::drivers {
 [[nodiscard]] Result<CameraFormat> read_format(std::span<const std::uint8_t> reply);
 [[nodiscard]] std::vector<std::uint8_t> bytes_of(const ExposureSettings& settings);
 [[nodiscard]] Result<ExposureSettings> read_exposure(std::span<const std::uint8_t> reply);
-[[nodiscard]] std::vector<std::uint8_t> bytes_of(double value);
-[[nodiscard]] Result<double> read_number(std::span<const std::uint8_t> reply);
+[[nodiscard]] std::vector<std::uint8_t> bytes_of(const std::optional<double>& value);
+/// Empty: there is none.
+[[nodiscard]] Result<std::optional<double>> read_number(std::span<const std::uint8_t> reply);
 [[nodiscard]] std::vector<std::uint8_t> bytes_of(bool value);
 [[nodiscard]] bool read_flag(std::span<const std::uint8_t> reply);
 

@@ -75,7 +75,7 @@ Result<ExposureSettings> ReplayCameraLink::exposure() {
   if (!told) return failure(told.error());
   return read_exposure(told->reply);
 }
-Result<double> ReplayCameraLink::temperature_c() {
+Result<std::optional<double>> ReplayCameraLink::temperature_c() {
   const Result<TapeExchange> told = ask(TapeCall::CameraTemperature);
   if (!told) return failure(told.error());
   return read_number(told->reply);

@@ -42,7 +42,7 @@ class ReplayCameraLink final : public CameraLink {
   Result<CameraFormat> format() override;
   Result<void> set_exposure(const ExposureSettings& settings) override;
   Result<ExposureSettings> exposure() override;
-  Result<double> temperature_c() override;
+  Result<std::optional<double>> temperature_c() override;
   Result<void> start() override;
   void stop() override;
   bool is_streaming() const override;

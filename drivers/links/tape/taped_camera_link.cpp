@@ -73,7 +73,7 @@ Result<ExposureSettings> TapedCameraLink::exposure() {
   return put(channel_, std::move(exchange), link_.exposure());
 }
 
-Result<double> TapedCameraLink::temperature_c() {
+Result<std::optional<double>> TapedCameraLink::temperature_c() {
   TapeExchange exchange = channel_.ask(TapeCall::CameraTemperature);
   return put(channel_, std::move(exchange), link_.temperature_c());
 }

@@ -30,7 +30,7 @@ class MockCamera : public CameraLink {
   MOCK_METHOD(Result<CameraFormat>, format, (), (override));
   MOCK_METHOD(Result<void>, set_exposure, (const ExposureSettings&), (override));
   MOCK_METHOD(Result<ExposureSettings>, exposure, (), (override));
-  MOCK_METHOD(Result<double>, temperature_c, (), (override));
+  MOCK_METHOD(Result<std::optional<double>>, temperature_c, (), (override));
   MOCK_METHOD(Result<void>, start, (), (override));
   MOCK_METHOD(void, stop, (), (override));
   MOCK_METHOD(bool, is_streaming, (), (const, override));
@@ -106,7 +106,8 @@ TEST_F(TapedLinks, PassAllOfModbusThroughAndReplayItAsItWas) {
 
 TEST_F(TapedLinks, PassAllOfACameraThroughAndReplayItAsItWas) {
   NiceMock<MockCamera> camera;
-  const CameraFormat format{.width = 2, .height = 3, .pixel_format = "Mono12", .packet_size_bytes = 1400};
+  const CameraFormat format{
+      .width = 2, .height = 3, .offset_x = 8, .offset_y = 4, .pixel_format = "Mono12", .packet_size_bytes = 1400};
   const ExposureSettings settings{.exposure = std::chrono::milliseconds(7), .gain_db = 1.5};
   CameraFrame frame{.is_complete = true, .trouble = {}, .width = 2, .height = 3, .pixels = {1, 2, 3, 4, 5, 4095}};
   frame.frame_id = 12;
@@ -116,10 +117,10 @@ TEST_F(TapedLinks, PassAllOfACameraThroughAndReplayItAsItWas) {
   ON_CALL(camera, has_lost_control).WillByDefault(Return(true));
   ON_CALL(camera, format).WillByDefault(Return(format));
   ON_CALL(camera, exposure).WillByDefault(Return(settings));
-  ON_CALL(camera, temperature_c).WillByDefault(Return(31.25));
   EXPECT_CALL(camera, set_format(format));
   EXPECT_CALL(camera, set_exposure(settings)).WillOnce(Return(failure(kSilence)));
   EXPECT_CALL(camera, stop());
+  EXPECT_CALL(camera, temperature_c).WillOnce(Return(31.25)).WillOnce(Return(std::nullopt));
   EXPECT_CALL(camera, close());
   EXPECT_CALL(camera, pop).WillOnce(Return(std::nullopt)).WillOnce(Return(frame));
   TapedCameraLink taped(camera, {tape, clock, TapeParty::Detector});
@@ -132,7 +133,8 @@ TEST_F(TapedLinks, PassAllOfACameraThroughAndReplayItAsItWas) {
     EXPECT_EQ(*link.format(), format);
     EXPECT_EQ(link.set_exposure(settings).error(), kSilence);
     EXPECT_EQ(*link.exposure(), settings);
-    EXPECT_EQ(*link.temperature_c(), 31.25);
+    EXPECT_EQ(*link.temperature_c(), std::optional<double>(31.25));
+    EXPECT_EQ(*link.temperature_c(), std::nullopt);
     EXPECT_TRUE(link.start());
     EXPECT_FALSE(link.is_streaming());
     EXPECT_TRUE(link.trigger());
