@@ -18,7 +18,7 @@ class CommandLine {
   explicit CommandLine(Invocation& wanted) : wanted_(wanted) {
     app_.require_subcommand(1);
     app_.fallthrough();
-    app_.set_version_flag("--version", "gonioctl 0.1.0");
+    app_.set_version_flag("--version", "gonioctl " GONIO_VERSION);
     app_.add_option("--connect", wanted.connect, "the daemon: http://ADDRESS:PORT or unix:PATH ($GONIOD_CONNECT)")
         ->capture_default_str();
     app_.add_option("-o,--output", wanted.format, "how answers are printed (table)")
@@ -30,6 +30,10 @@ class CommandLine {
     add_plan();
     add_scan();
     add_data();
+    leaf(app_, "instrument", "the instrument as the daemon was told of it", Verb::Instrument);
+    CLI::App& doctor =
+        *leaf(app_, "doctor", "commissioning checks: what works, what does not, what to do", Verb::Doctor);
+    doctor.add_flag("--move", wanted.move, "also home, move each axis a little and back, and STOP once: look first");
     CLI::App& events = *leaf(app_, "events", "what was committed, one event a line", Verb::Events);
     events.add_flag("-f,--follow", wanted.follow, "wait for more");
     events.add_option("--after", wanted.after, "begin after this event's number")->check(CLI::NonNegativeNumber);
@@ -67,7 +71,7 @@ class CommandLine {
     stage.preparse_callback([this](std::size_t) { wanted_.verb = Verb::StageShow; });
     leaf(stage, "show", "where it is", Verb::StageShow);
     CLI::App& move = *leaf(stage, "move", "move the named axes, and wait until they stand", Verb::StageMove);
-    api::MoveRequest& to = wanted_.move;
+    api::MoveRequest& to = wanted_.target;
     move.add_option("--theta-i", to.theta_i_deg, "source arm, deg");
     move.add_option("--theta-r", to.theta_r_deg, "detector arm, deg");
     move.add_option("--phi-r", to.phi_r_deg, "detector azimuth, deg");

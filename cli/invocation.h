@@ -30,6 +30,8 @@ enum class Verb : std::uint8_t {
   ScanSkip,
   DataExport,
   ReferenceList,
+  Instrument,
+  Doctor,
   Events,
 };
 
@@ -43,10 +45,11 @@ struct Invocation {
   bool watch = false;
   bool now = false;        ///< pause
   bool follow = false;     ///< events
+  bool move = false;       ///< doctor
   std::int64_t after = 0;  ///< events
   std::string reason;
-  std::string key;  ///< Idempotency-Key; empty: a new one
-  api::MoveRequest move;
+  std::string key;          ///< Idempotency-Key; empty: a new one
+  api::MoveRequest target;  ///< of a move by hand
 };
 
 /// Something to be printed instead: help or version (to standard output, exit code 0), or why the line is wrong (2).

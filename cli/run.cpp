@@ -5,7 +5,10 @@
 #include <array>
 #include <ostream>
 
+#include "base/clock.h"
 #include "cli/daemon_client.h"
+#include "cli/doctor/doctor.h"
+#include "cli/doctor/findings_view.h"
 #include "cli/files.h"
 #include "cli/invocation.h"
 #include "cli/scan_watch.h"
@@ -41,7 +44,7 @@ class Runner {
       case Verb::StageShow:
         return show(client_.get<api::StageReport>(RouteId::Stage));
       case Verb::StageMove:
-        return command(RouteId::StageMove, api::to_json(wanted_.move));
+        return command(RouteId::StageMove, api::to_json(wanted_.target));
       case Verb::StageHome:
         return command(RouteId::StageHome, "{}");
       case Verb::StageReset:
@@ -70,6 +73,10 @@ class Runner {
         return export_data();
       case Verb::ReferenceList:
         return list_references();
+      case Verb::Instrument:
+        return show(client_.get<api::InstrumentReport>(RouteId::Instrument));
+      case Verb::Doctor:
+        return run_doctor();
       case Verb::Events:
         return list_events();
     }
@@ -180,6 +187,29 @@ class Runner {
     });
     if (listened) return 0;
     return failure(listened.error());
+  }
+
+  Result<int> run_doctor() {
+    const auto open_another = [this]() -> Result<DaemonClient> {
+      Result<HttpClient> http = HttpClient::open(client_.connect(), world_.interrupted);
+      if (!http) return failure(http.error());
+      return DaemonClient(std::move(*http), client_.connect());
+    };
+    std::vector<Finding> findings;
+    const bool tells = wanted_.format == Format::Table;
+    Doctor doctor(
+        client_, open_another,
+        {.move = wanted_.move, .today = iso8601(SystemClock().utc_now()).substr(0, 10), .own_version = GONIO_VERSION},
+        [&](const Finding& finding) {
+          findings.push_back(finding);
+          if (tells) print_finding(world_.out, finding);
+        });
+    const Result<bool> is_well = doctor.run();
+    if (!is_well) return failure(is_well.error());
+    if (wanted_.format == Format::Csv) print_csv(world_.out, view(findings));
+    if (wanted_.format == Format::Json || wanted_.format == Format::Jsonl)
+      world_.out << findings_json(findings) << '\n';
+    return *is_well ? 0 : 1;
   }
 
   void print_event(const api::Event& event) {

@@ -175,6 +175,34 @@ Table view(const api::ReferenceList& references) {
   return table;
 }
 
+Table view(const api::InstrumentReport& instrument) {
+  Facts facts;
+  facts.add("instrument", instrument.name)
+      .add("sha256", instrument.sha256)
+      .add("stage", instrument.stage_link)
+      .add("heartbeat_timeout_s", number_text(instrument.heartbeat_timeout_s));
+  for (const api::AxisLimits& axis : instrument.axes) {
+    facts.add(axis.name,
+              fmt::format("{} to {} {}, {} {}/s, {} {}/s^2, settles in {} s within +- {} {}", axis.low, axis.high,
+                          axis.unit, number_text(axis.speed_per_s), axis.unit, number_text(axis.acceleration_per_s2),
+                          axis.unit, axis.settle_s, number_text(axis.window), axis.unit));
+  }
+  for (const api::FilterReport& filter : instrument.filters) {
+    facts.add(fmt::format("filter_{}", filter.slot),
+              fmt::format("{} nm, {} nm wide, {} side", number_text(filter.centroid_nm), number_text(filter.fwhm_nm),
+                          filter.side));
+  }
+  facts
+      .add("carriage_mm", fmt::format("sample {}, reference {}, trap {}", instrument.sample_mm, instrument.reference_mm,
+                                      instrument.trap_mm))
+      .add("detector", instrument.detector_serial)
+      .add("exposures_s",
+           fmt::format("{} to {}, by twos", instrument.shortest_exposure_s, instrument.longest_exposure_s))
+      .add("lamp_monitor", fmt::format("{} to {}", instrument.monitor_low, instrument.monitor_high))
+      .add("store_free_bytes", std::to_string(instrument.store_free_bytes));
+  return facts.take();
+}
+
 Table view(const api::CommandReport& command) {
   Facts facts;
   if (command.scan != 0) facts.add("scan", std::to_string(command.scan));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/output.h"
+#include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
 
 namespace gonio::cli {
@@ -15,6 +16,8 @@ namespace gonio::cli {
 [[nodiscard]] Table view(const api::CommandReport& command);
 [[nodiscard]] Table view(const api::StopReport& stop);
 [[nodiscard]] Table view(const api::Event& event);
+
+[[nodiscard]] Table view(const api::InstrumentReport& instrument);
 
 /// "operator (local: lunch), lamp (detector: ...)"; empty without holds.
 [[nodiscard]] std::string holds_text(const api::ScanReport& scan);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "daemon/app/calibration_desk.h"
+#include "daemon/app/instrument_report.h"
 #include "daemon/app/plan_desk.h"
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
@@ -291,6 +292,10 @@ Result<api::ReferenceList> DaemonService::references() {
     list.references.push_back(std::move(report));
   }
   return list;
+}
+
+api::InstrumentReport DaemonService::instrument() {
+  return instrument_report(parts_.instrument, parts_.store_file);
 }
 
 Result<std::vector<api::Event>> DaemonService::events(std::int64_t after, int at_most) {

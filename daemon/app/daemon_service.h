@@ -46,6 +46,7 @@ class DaemonService final : public Service {
   Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) override;
   Result<std::string> export_csv(std::int64_t scan) override;
   Result<api::ReferenceList> references() override;
+  api::InstrumentReport instrument() override;
   Result<std::vector<api::Event>> events(std::int64_t after, int at_most) override;
 
  private:

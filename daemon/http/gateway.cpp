@@ -191,6 +191,8 @@ HttpResponse Gateway::read(const HttpRequest& request, const RouteMatch& match) 
       Result<std::string> csv = service_.export_csv(match.scan);
       return csv ? success(api::kCsv, std::move(csv).value()) : problem(csv.error());
     }
+    case RouteId::Instrument:
+      return success(api::kJson, api::to_json(service_.instrument()));
     default:
       return json_response(service_.references());
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
 #include "protocol/api/requests.h"
 
@@ -56,6 +57,7 @@ class Service {
   [[nodiscard]] virtual Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) = 0;
   [[nodiscard]] virtual Result<std::string> export_csv(std::int64_t scan) = 0;
   [[nodiscard]] virtual Result<api::ReferenceList> references() = 0;
+  [[nodiscard]] virtual api::InstrumentReport instrument() = 0;
   /// Committed events with number > `after`, in order.
   [[nodiscard]] virtual Result<std::vector<api::Event>> events(std::int64_t after, int at_most) = 0;
 };

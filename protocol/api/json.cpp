@@ -89,6 +89,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanList, scans)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceReport, serial, material, file, certificate_date, expires,
                                                 error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceList, references)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AxisLimits, name, unit, low, high, speed_per_s, acceleration_per_s2,
+                                                settle_s, window)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(FilterReport, slot, centroid_nm, fwhm_nm, side)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(InstrumentReport, name, sha256, stage_link, heartbeat_timeout_s, axes,
+                                                filters, sample_mm, reference_mm, trap_mm, detector_serial,
+                                                shortest_exposure_s, longest_exposure_s, full_scale_dn, read_noise_dn,
+                                                electrons_per_dn, monitor_low, monitor_high, store_free_bytes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StopReport, epoch)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CommandReport, scan, existed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanSubmission, plan, plan_file, parts)
@@ -217,6 +224,7 @@ GONIO_REPORT(BrdfPage);
 GONIO_REPORT(ScanList);
 GONIO_REPORT(ReferenceReport);
 GONIO_REPORT(ReferenceList);
+GONIO_REPORT(InstrumentReport);
 GONIO_REPORT(Event);
 GONIO_REPORT(StopReport);
 GONIO_REPORT(CommandReport);

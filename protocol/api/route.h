@@ -37,6 +37,7 @@ enum class RouteId : std::uint8_t {
   ScanAbort,
   ScanSkip,
   References,
+  Instrument,
   Events,
 };
 
@@ -89,6 +90,7 @@ inline constexpr std::array kRoutes{
     Route{RouteId::ScanSkip, Method::Post, "/api/v1/scans/{scan}/skip", Permission::Operator, kJson, kJson, true,
           kSmallBody},
     Route{RouteId::References, Method::Get, "/api/v1/references", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::Instrument, Method::Get, "/api/v1/instrument", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::Events, Method::Get, "/api/v1/events", Permission::Viewer, "", kEventStream, false, 0},
 };
 

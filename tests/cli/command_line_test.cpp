@@ -18,9 +18,9 @@ TEST(CommandLine, MovesNameTheirAxes) {
   const Invocation wanted = read({"stage", "move", "--theta-i", "30", "--phi-r", "-12.5"});
 
   EXPECT_EQ(wanted.verb, Verb::StageMove);
-  EXPECT_EQ(wanted.move.theta_i_deg, 30.0);
-  EXPECT_EQ(wanted.move.phi_r_deg, -12.5);
-  EXPECT_FALSE(wanted.move.theta_r_deg.has_value());
+  EXPECT_EQ(wanted.target.theta_i_deg, 30.0);
+  EXPECT_EQ(wanted.target.phi_r_deg, -12.5);
+  EXPECT_FALSE(wanted.target.theta_r_deg.has_value());
 }
 
 TEST(CommandLine, TheStageAloneIsShown) {

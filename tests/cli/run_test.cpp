@@ -189,5 +189,29 @@ TEST_F(Gonioctl, ListsTheEventsThereAreAndEnds) {
   EXPECT_THAT(out_.str(), IsEmpty());
 }
 
+TEST_F(Gonioctl, DoctorLooksWithoutMovingAndNamesWhatToDo) {
+  EXPECT_EQ(run({"doctor"}), 1) << "the service has no reference standard";
+
+  EXPECT_THAT(out_.str(), HasSubstr("ok       disk of the store: 931.3 GiB free"));
+  EXPECT_THAT(out_.str(), HasSubstr("FAILED   reference standards: none (at least one)"));
+  EXPECT_THAT(out_.str(), HasSubstr("-> put the certificate into"));
+  EXPECT_THAT(out_.str(), HasSubstr("skipped  motion"));
+  EXPECT_THAT(service_.asked(), IsEmpty()) << "nothing was commanded";
+}
+
+TEST_F(Gonioctl, DoctorsFindingsAreAlsoForPrograms) {
+  EXPECT_EQ(run({"doctor", "-o", "json"}), 1);
+  EXPECT_THAT(out_.str(), HasSubstr("{\"check\":\"disk of the store\""));
+
+  EXPECT_EQ(run({"doctor", "-o", "csv"}), 1);
+  EXPECT_THAT(out_.str(), HasSubstr("check,verdict,seen,limit,remedy\n"));
+}
+
+TEST_F(Gonioctl, ShowsTheInstrumentAsTheDaemonWasToldOfIt) {
+  EXPECT_EQ(run({"instrument"}), 0);
+
+  EXPECT_THAT(out_.str(), HasSubstr("0 to 85 deg, 20 deg/s, 40 deg/s^2, settles in 0.1 s within +- 0.01 deg"));
+}
+
 }  // namespace
 }  // namespace gonio::cli

@@ -25,6 +25,7 @@ std::string plan_text(const PlanOptions& options) {
        << "[geometry]\ntheta_i_deg = " << options.theta_i_deg << "\ntheta_r_deg = " << options.theta_r_deg
        << "\nphi_r_deg = " << options.phi_r_deg << "\nwavelength_nm = [568]\n"
        << "[reading]\ntarget_snr = " << options.target_snr << "\nmax_time_s = 0.5\n"
+       << (options.exposure_s.empty() ? "" : "exposure_s = " + options.exposure_s + "\n")
        << "[reference]\nstandard = \"SRT-99-020\"\nmode = \"same-geometry\"\nblock_s = 20\n"
        << "[visits]\ndark_s = 10\n[order]\nstrategy = \"" << options.strategy << "\"\n"
        << "[on_error]\nitem = \"" << options.on_item_error << "\"\n[on_restart]\npolicy = \"resume\"\n";

@@ -32,6 +32,7 @@ struct PlanOptions {
   std::string phi_r_deg = "[0, 90, 180]";
   std::string strategy = "fastest";
   double target_snr = 100.0;
+  std::string exposure_s{};  ///< stated: "[0.001, 0.016]"; empty: chosen
   std::string on_item_error = "retry 2, then skip";
 };
 [[nodiscard]] std::string plan_text(const PlanOptions& options);

@@ -138,4 +138,8 @@ void Simulator::block_axis(const std::string& axis, bool on) const {
   order(json{{"fault", "axis-blocked"}, {"axis", axis}, {"on", on}}.dump());
 }
 
+void Simulator::open_interlock(bool on) const {
+  order(json{{"fault", "interlock-open"}, {"on", on}}.dump());
+}
+
 }  // namespace gonio::test

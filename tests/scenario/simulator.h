@@ -67,6 +67,8 @@ class Simulator {
   void refuse_stage(bool on) const;
   /// An axis stands still, whatever its drive does.
   void block_axis(const std::string& axis, bool on) const;
+  /// As if the door of the dark room were open.
+  void open_interlock(bool on) const;
 
  private:
   [[nodiscard]] std::string ask(const std::string& line) const;

@@ -82,6 +82,20 @@ class FakeService final : public daemon::Service {
   Result<api::BrdfPage> brdf(std::int64_t, std::int64_t, int) override { return api::BrdfPage{}; }
   Result<std::string> export_csv(std::int64_t) override { return std::string("# scan: 3\npoint,theta_i_deg\n0,30\n"); }
   Result<api::ReferenceList> references() override { return api::ReferenceList{}; }
+  api::InstrumentReport instrument() override {
+    return {.name = "bench A",
+            .axes = {{.name = "theta_i",
+                      .unit = "deg",
+                      .low = 0.0,
+                      .high = 85.0,
+                      .speed_per_s = 20.0,
+                      .acceleration_per_s2 = 40.0,
+                      .settle_s = 0.1,
+                      .window = 0.01}},
+            .monitor_low = 0.2,
+            .monitor_high = 5.0,
+            .store_free_bytes = free_bytes};
+  }
   Result<std::vector<api::Event>> events(std::int64_t after, int at_most) override {
     const std::lock_guard lock(mutex_);
     std::vector<api::Event> found;
@@ -114,6 +128,7 @@ class FakeService final : public daemon::Service {
 
   std::atomic<bool> hold_replies{false};  ///< moves wait for answer_held
   std::string scan_state = "running";     ///< set before the server starts
+  std::int64_t free_bytes = 1'000'000'000'000;
 
  private:
   static api::StageReport stage_report() {

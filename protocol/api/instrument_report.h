@@ -1,0 +1,51 @@
+#pragma once
+
+// The instrument as the daemon was told of it, and readings taken by hand; units in the names, as in the JSON (json.h).
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gonio::api {
+
+/// An axis as instrument.toml has it, in its own unit.
+struct AxisLimits {
+  std::string name;  ///< "theta_i"
+  std::string unit;  ///< "deg", "mm" or "slot"
+  double low = 0.0;
+  double high = 0.0;
+  double speed_per_s = 0.0;
+  double acceleration_per_s2 = 0.0;
+  double settle_s = 0.0;
+  double window = 0.0;  ///< +- about a target: arrived
+};
+
+struct FilterReport {
+  int slot = 0;
+  double centroid_nm = 0.0;
+  double fwhm_nm = 0.0;
+  std::string side;  ///< "detector" or "source"
+};
+
+struct InstrumentReport {
+  std::string name;
+  std::string sha256;
+  std::string stage_link;  ///< "tcp 192.0.2.7:502", "rtu /dev/ttyUSB0 at 115200 baud"
+  double heartbeat_timeout_s = 0.0;
+  std::vector<AxisLimits> axes;
+  std::vector<FilterReport> filters;
+  double sample_mm = 0.0;
+  double reference_mm = 0.0;
+  double trap_mm = 0.0;
+  std::string detector_serial;
+  double shortest_exposure_s = 0.0;
+  double longest_exposure_s = 0.0;
+  double full_scale_dn = 0.0;
+  double read_noise_dn = 0.0;
+  double electrons_per_dn = 0.0;
+  double monitor_low = 0.0;
+  double monitor_high = 0.0;
+  std::int64_t store_free_bytes = 0;  ///< on the store's disk
+};
+
+}  // namespace gonio::api
