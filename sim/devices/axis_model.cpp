@@ -10,13 +10,27 @@ constexpr std::uint16_t kFollowingError = 1;  // protocol/stage: `axis_fault`
 
 }  // namespace
 
-AxisModel::AxisModel(const AxisSpec& spec, double scale, double time_scale, double following_error_s, double position)
+AxisModel::AxisModel(const AxisSpec& spec, double scale, double time_scale, double following_error_s, double position,
+                     double lag)
     : spec_(spec),
       dynamics_{.speed = spec.speed * time_scale, .acceleration = spec.acceleration * time_scale * time_scale},
       scale_(scale),
       following_error_(seconds(following_error_s / time_scale)),
       path_(position),
+      moved_(position + lag),
       origin_(position) {}
+
+// One path goes one way only, so the play is taken up once: a flank pushes, or it stands where it stood.
+double AxisModel::lag(Instant t) const {
+  if (spec_.backlash == 0.0) return 0.0;
+  const double half_play = 0.5 * spec_.backlash;
+  return std::clamp(moved_ - position(t), -half_play, half_play);
+}
+
+void AxisModel::follow(Trajectory path, Instant now) {
+  moved_ = position(now) + lag(now);
+  path_ = path;
+}
 
 std::int32_t AxisModel::counts(Instant t) const {
   return static_cast<std::int32_t>(std::lround((position(t) - origin_) / scale_));
@@ -34,7 +48,7 @@ void AxisModel::start(double target, double speed_factor, std::uint64_t move, In
     if (here != target) fault_due_ = now + following_error_;
     return;
   }
-  path_ = Trajectory::move(here, target, {dynamics_.speed * speed_factor, dynamics_.acceleration}, now);
+  follow(Trajectory::move(here, target, {dynamics_.speed * speed_factor, dynamics_.acceleration}, now), now);
 }
 
 void AxisModel::move_to(double target, std::uint64_t move, Instant now) {
@@ -52,7 +66,7 @@ void AxisModel::brake(Instant now) {
   homing_end_.reset();
   fault_due_.reset();
   if (!path_.is_moving(now)) return;
-  path_ = Trajectory::brake(position(now), path_.velocity(now), dynamics_.acceleration, now);
+  follow(Trajectory::brake(position(now), path_.velocity(now), dynamics_.acceleration, now), now);
 }
 
 void AxisModel::block(Instant now) {
@@ -60,7 +74,7 @@ void AxisModel::block(Instant now) {
   if (!path_.is_moving(now)) return;
   homing_end_.reset();
   fault_due_ = now + following_error_;
-  path_ = Trajectory(position(now));
+  follow(Trajectory(position(now)), now);
 }
 
 void AxisModel::clear_fault() {

@@ -14,7 +14,9 @@ namespace gonio::sim {
 class AxisModel {
  public:
   /// `spec` in scene time; `scale` the unit per encoder count.
-  AxisModel(const AxisSpec& spec, double scale, double time_scale, double following_error_s, double position);
+  /// What is moved stands `lag` from the motor.
+  AxisModel(const AxisSpec& spec, double scale, double time_scale, double following_error_s, double position,
+            double lag = 0.0);
 
   void move_to(double target, std::uint64_t move, Instant now);
   /// Looks for the zero, at half speed; homed once it is there.
@@ -31,6 +33,8 @@ class AxisModel {
   bool advance_to(Instant now);
 
   [[nodiscard]] double position(Instant t) const { return path_.position(t); }
+  /// How far what is moved stands from its motor: within half of the play, on the side that the last motion left.
+  [[nodiscard]] double lag(Instant t) const;
   [[nodiscard]] std::int32_t counts(Instant t) const;
   [[nodiscard]] double destination() const { return path_.destination(); }
   [[nodiscard]] double target_of_counts(std::int64_t counts) const {
@@ -46,12 +50,14 @@ class AxisModel {
 
  private:
   void start(double target, double speed_factor, std::uint64_t move, Instant now);
+  void follow(Trajectory path, Instant now);
 
   AxisSpec spec_;
   AxisDynamics dynamics_;  ///< wall time
   double scale_;
   Duration following_error_;
   Trajectory path_;
+  double moved_;   ///< where what is moved stood when `path_` began
   double origin_;  ///< position at zero counts
   bool is_homed_ = false;
   std::optional<Instant> homing_end_;

@@ -40,7 +40,7 @@ class CameraModel {
   [[nodiscard]] Result<void> set_gain(double gain_db);
   [[nodiscard]] Duration exposure() const { return exposure_; }
   [[nodiscard]] double gain_db() const { return gain_db_; }
-  [[nodiscard]] Temperature temperature() const { return instrument_.scene().environment.detector; }
+  [[nodiscard]] Temperature temperature(Instant now) const { return instrument_.detector_temperature(now); }
 
   /// False: an exposure is under way, the trigger is lost.
   bool trigger(Instant now);

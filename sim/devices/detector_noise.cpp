@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/optics/speckle_pattern.h"
 #include "sim/scene/chance.h"
 
 namespace gonio::sim {
@@ -14,12 +15,13 @@ class PixelModel {
   PixelModel(const DetectorSpec& spec, const Exposure& exposure)
       : spec_(spec),
         exposure_(exposure),
+        offset_dn_(spec.offset_dn + exposure.offset_shift_dn),
         dn_per_electron_(std::pow(10.0, exposure.gain_db / 20.0) / spec.electrons_per_dn) {}
 
   [[nodiscard]] double electrons(double lit) const {
     return lit * exposure_.light_electrons + exposure_.dark_electrons;
   }
-  [[nodiscard]] double mean_dn() const { return spec_.offset_dn + dn_per_electron_ * electrons(1.0); }
+  [[nodiscard]] double mean_dn() const { return offset_dn_ + dn_per_electron_ * electrons(1.0); }
   // Cumulants of a fully lit pixel: Poisson, read noise, and rounding to whole DN (variance 1/12, fourth cumulant
   // -1/120).
   [[nodiscard]] double cumulant2() const {
@@ -34,12 +36,13 @@ class PixelModel {
     const double read = spec_.read_noise_dn == 0.0 ? 0.0 : spec_.read_noise_dn * chance.normal();
     const double signal =
         chance.poisson(electrons(lit)) * dn_per_electron_ + read * dn_per_electron_ * spec_.electrons_per_dn;
-    return std::clamp(std::round(spec_.offset_dn + signal), 0.0, kFullScaleDn);
+    return std::clamp(std::round(offset_dn_ + signal), 0.0, kFullScaleDn);
   }
 
  private:
   const DetectorSpec& spec_;
   const Exposure& exposure_;
+  double offset_dn_;
   double dn_per_electron_;
 };
 
@@ -52,18 +55,37 @@ double distance(const Aperture& a, int x, int y) {
   return std::hypot(x - a.centre_x_px, y - a.centre_y_px);
 }
 
-// Row by row: the pixels of a chord.
-std::uint32_t pixels_inside(const DetectorSpec& spec) {
+// The aperture's pixels of one row: those of a chord, [first, last], none when last < first.
+struct Chord {
+  int first = 0;
+  int last = -1;
+};
+
+Chord chord(const DetectorSpec& spec, int y) {
   const Aperture a = aperture_of(spec);
-  std::uint32_t n = 0;
+  const double half_chord2 = a.radius_px * a.radius_px - (y - a.centre_y_px) * (y - a.centre_y_px);
+  if (half_chord2 < 0.0) return {};
+  return {.first = static_cast<int>(std::max(0.0, std::ceil(a.centre_x_px - std::sqrt(half_chord2)))),
+          .last = static_cast<int>(std::min(spec.width_px - 1.0, std::floor(a.centre_x_px + std::sqrt(half_chord2))))};
+}
+
+std::uint32_t pixels_inside(const DetectorSpec& spec) {
+  int n = 0;
   for (int y = 0; y < spec.height_px; ++y) {
-    const double half_chord2 = a.radius_px * a.radius_px - (y - a.centre_y_px) * (y - a.centre_y_px);
-    if (half_chord2 < 0.0) continue;
-    const double first = std::max(0.0, std::ceil(a.centre_x_px - std::sqrt(half_chord2)));
-    const double last = std::min(spec.width_px - 1.0, std::floor(a.centre_x_px + std::sqrt(half_chord2)));
-    n += static_cast<std::uint32_t>(std::max(0.0, last - first + 1.0));
+    const Chord row = chord(spec, y);
+    n += std::max(0, row.last - row.first + 1);
   }
-  return n;
+  return static_cast<std::uint32_t>(n);
+}
+
+std::vector<double> drawn_pixels(const DetectorSpec& spec, const PixelModel& pixel, const SpecklePattern& speckle,
+                                 Chance& chance) {
+  std::vector<double> values;
+  for (int y = 0; y < spec.height_px; ++y) {
+    const Chord row = chord(spec, y);
+    for (int x = row.first; x <= row.last; ++x) values.push_back(pixel.draw(chance, speckle(x, y)));
+  }
+  return values;
 }
 
 RegionStatistics statistics_of(const std::vector<double>& values) {
@@ -93,12 +115,14 @@ Aperture aperture_of(const DetectorSpec& spec) {
 std::vector<std::uint16_t> render_frame(const DetectorSpec& spec, const Exposure& exposure, std::uint64_t seed) {
   const PixelModel pixel(spec, exposure);
   const Aperture middle = aperture_of(spec);
+  const SpecklePattern speckle(spec.speckle, spec.width_px, spec.height_px, seed, exposure.place);
   Chance chance(seed, Purpose::Pixels, exposure.number);
   std::vector<std::uint16_t> frame;
   frame.reserve(static_cast<std::size_t>(spec.width_px) * static_cast<std::size_t>(spec.height_px));
   for (int y = 0; y < spec.height_px; ++y) {
     for (int x = 0; x < spec.width_px; ++x) {
-      frame.push_back(static_cast<std::uint16_t>(pixel.draw(chance, lit_share(spec, distance(middle, x, y)))));
+      const double lit = lit_share(spec, distance(middle, x, y)) * speckle(x, y);
+      frame.push_back(static_cast<std::uint16_t>(pixel.draw(chance, lit)));
     }
   }
   return frame;
@@ -112,10 +136,9 @@ RegionStatistics draw_region(const DetectorSpec& spec, const Exposure& exposure,
   const double n = pixels_inside(spec);
   const double sigma = std::sqrt(pixel.cumulant2());
   const double headroom = std::min(pixel.mean_dn(), kFullScaleDn - pixel.mean_dn());
-  if (headroom < kFarFromClipping * sigma || sigma < kFinelyRounded) {
-    std::vector<double> values(static_cast<std::size_t>(n));
-    for (double& v : values) v = pixel.draw(chance, 1.0);
-    return statistics_of(values);
+  if (headroom < kFarFromClipping * sigma || sigma < kFinelyRounded || spec.speckle.contrast != 0.0) {
+    const SpecklePattern speckle(spec.speckle, spec.width_px, spec.height_px, seed, exposure.place);
+    return statistics_of(drawn_pixels(spec, pixel, speckle, chance));
   }
   // Mean and variance of nearly normal pixels are independent; skewness and kurtosis scatter by 6/n and 24/n.
   RegionStatistics s{.n = static_cast<std::uint32_t>(n)};

@@ -14,8 +14,10 @@ struct Exposure {
   Instant open{};
   Instant close{};
   double light_electrons = 0.0;  ///< mean of a lit pixel, nonlinearity included
-  double dark_electrons = 0.0;   ///< mean of any pixel
+  double dark_electrons = 0.0;   ///< mean of any pixel: dark charge, and light that falls everywhere
   double gain_db = 0.0;
+  double offset_shift_dn = 0.0;  ///< beside the scene's offset
+  std::uint64_t place = 0;       ///< the key of its speckle, which other exposures may share
 };
 
 /// A circle of pixels; pixel (0, 0) has its centre at (0, 0). Inside: the centre's distance is at most the radius.
@@ -38,13 +40,14 @@ struct RegionStatistics {
 };
 
 /// The frame of an exposure, row by row: Poisson electrons, read noise, offset, rounded and clipped to 12 bits. The lit
-/// spot is a disc in the middle with an edge two pixels wide. The same exposure of the same seed gives the same frame.
+/// spot is a disc in the middle with an edge two pixels wide, as grainy as the speckle of its place. The same exposure
+/// of the same seed gives the same frame.
 [[nodiscard]] std::vector<std::uint16_t> render_frame(const DetectorSpec& spec, const Exposure& exposure,
                                                       std::uint64_t seed);
 
 /// The statistics that such a frame would have, drawn from their own distribution instead of pixel by pixel: some
-/// hundred times faster. Where clipping or coarse rounding shapes the distribution, the aperture's pixels are drawn
-/// after all.
+/// hundred times faster. Where clipping, coarse rounding or speckle shapes the distribution, the aperture's pixels are
+/// drawn after all.
 [[nodiscard]] RegionStatistics draw_region(const DetectorSpec& spec, const Exposure& exposure, std::uint64_t seed);
 
 /// The light's electrons as the detector turns them into signal: net (1 + eps net / full scale).

@@ -34,6 +34,7 @@ Instrument::Instrument(Scene scene, InstrumentMemory memory, Instant power_up)
       truth_(scene_),
       lamp_(scene_),
       light_path_(scene_, truth_),
+      charge_(scene_, truth_),
       stage_(scene_.stage, scene_.time_scale, memory.stage, power_up),
       power_up_(power_up),
       now_(power_up),
@@ -81,7 +82,11 @@ bool Instrument::start_exposure(Duration duration, double gain_db, Instant now) 
   ++memory_.exposures;
   if (here.source_open && here.detector_open) ++memory_.lit_exposures;
   ++memory_.places[place_of(light_path_, here)];
-  running_ = Running{.open = now_, .close = now_ + duration, .integrated_to = now_, .gain_db = gain_db};
+  running_ = Running{.open = now_,
+                     .close = now_ + duration,
+                     .integrated_to = now_,
+                     .gain_db = gain_db,
+                     .place = light_path_.place(here)};
   return true;
 }
 
@@ -135,27 +140,29 @@ void Instrument::integrate(Running& run, Instant t) const {
   std::ranges::sort(cuts);
   for (const Instant cut : cuts) {
     if (cut <= run.integrated_to || cut > to) continue;
-    run.rate_integral += rate_integral(run.integrated_to, cut);
+    run.light += light_integral(run.integrated_to, cut);
     run.integrated_to = cut;
   }
 }
 
-double Instrument::rate_integral(Instant from, Instant to) const {
+LightRate Instrument::light_integral(Instant from, Instant to) const {
   const double length_s = scene_.scene_seconds(to - from);
   StagePose at = pose(from);
-  if (!at.source_open || !at.detector_open) return 0.0;
-  if (!stage_.is_moving(from)) return length_s * light_path_.electron_rate(at);
+  if (!at.detector_open) return {};
+  if (!at.source_open || !stage_.is_moving(from)) return light_path_.rate(at) * length_s;
   constexpr int kPanels = 32;
   const auto step = (to - from) / (2.0 * kPanels);  // half a panel
-  double sum = 0.0;
+  LightRate sum;
   for (int panel = 0; panel < kPanels; ++panel) {
     for (std::size_t k = 0; k < kNodes.size(); ++k) {
       const auto after = std::chrono::duration_cast<Duration>(step * (2 * panel + 1 + kNodes[k]));
-      at.positions = pose(from + after).positions;
-      sum += kWeights[k] * light_path_.electron_rate(at);
+      const StagePose then = pose(from + after);
+      at.positions = then.positions;
+      at.lags = then.lags;
+      sum += light_path_.rate(at) * kWeights[k];
     }
   }
-  return sum * length_s / (2.0 * kPanels);
+  return sum * (length_s / (2.0 * kPanels));
 }
 
 void Instrument::finish_exposure() {
@@ -164,14 +171,13 @@ void Instrument::finish_exposure() {
   const double from_s = scene_time_s(run.open);
   const double to_s = scene_time_s(run.close);
   stage_.close_gate(run.close, lamp_.monitor(from_s, to_s, memory_.exposures));
-  const double light = run.rate_integral * lamp_.mean(from_s, to_s);
-  const DetectorSpec& detector = scene_.detector;
-  finished_ = Exposure{.number = memory_.exposures,
-                       .open = run.open,
-                       .close = run.close,
-                       .light_electrons = after_nonlinearity(detector, light, truth_.nonlinearity()),
-                       .dark_electrons = detector.dark_dn_per_s * detector.electrons_per_dn * (to_s - from_s),
-                       .gain_db = run.gain_db};
+  Exposure exposure = charge_.collect(run.light, lamp_.mean(from_s, to_s), from_s, to_s - from_s);
+  exposure.number = memory_.exposures;
+  exposure.open = run.open;
+  exposure.close = run.close;
+  exposure.gain_db = run.gain_db;
+  exposure.place = run.place;
+  finished_ = exposure;
 }
 
 void Instrument::finish_collection(Collector& collector) {
@@ -183,7 +189,8 @@ void Instrument::finish_collection(Collector& collector) {
   collector.finished =
       LightCollection{.open = run.open,
                       .close = run.close,
-                      .light = run.rate_integral * lamp / (scene_.detector.electrons_per_s * (to_s - from_s)),
+                      .light = (run.light.target * lamp + run.light.veil * lamp + run.light.ambient) /
+                               (scene_.detector.electrons_per_s * (to_s - from_s)),
                       .lamp = lamp_.monitored(from_s, to_s),
                       .wavelength = filter == nullptr ? std::nullopt : std::optional<Wavelength>(filter->centroid)};
 }
@@ -194,6 +201,7 @@ StagePose Instrument::pose(Instant t) const {
                  .detector_open = is_open(stage_.detector_shutter(), t)};
   for (const Axis a : stage::kAllAxes) {
     pose.positions[stage::index_of(a)] = stage_.axis(a).position(t);
+    pose.lags[stage::index_of(a)] = stage_.axis(a).lag(t);
     pose.last_moves[stage::index_of(a)] = stage_.axis(a).last_move();
   }
   return pose;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "sim/devices/detector_charge.h"
 #include "sim/devices/detector_noise.h"
 #include "sim/devices/stage_model.h"
 #include "sim/optics/lamp.h"
@@ -85,6 +86,9 @@ class Instrument {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Truth& truth() const { return truth_; }
+  [[nodiscard]] Temperature detector_temperature(Instant now) const {
+    return charge_.drift().detector_temperature(scene_time_s(now));
+  }
   [[nodiscard]] double monitor_now(Instant now) const { return lamp_.monitor_now(scene_time_s(now)); }
   [[nodiscard]] StagePose pose(Instant t) const;
   [[nodiscard]] InstrumentMemory memory(Instant now) const;
@@ -95,12 +99,13 @@ class Instrument {
     Instant close{};
     Instant integrated_to{};
     double gain_db = 0.0;
-    double rate_integral = 0.0;  ///< electrons for lamp output 1
+    std::uint64_t place = 0;
+    LightRate light;  ///< integrated so far
   };
   [[nodiscard]] double scene_time_s(Instant t) const;
   void integrate_to(Instant t);
   void integrate(Running& run, Instant t) const;
-  [[nodiscard]] double rate_integral(Instant from, Instant to) const;
+  [[nodiscard]] LightRate light_integral(Instant from, Instant to) const;
   void finish_exposure();
   struct Collector {
     std::optional<Running> running;
@@ -112,6 +117,7 @@ class Instrument {
   Truth truth_;
   Lamp lamp_;
   LightPath light_path_;
+  DetectorCharge charge_;
   StageModel stage_;
   Instant power_up_;
   Instant now_;

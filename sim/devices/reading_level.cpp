@@ -33,7 +33,7 @@ double slot_of(const Scene& scene, Wavelength wavelength) {
 }  // namespace
 
 ReadingLevel::ReadingLevel(Scene scene)
-    : scene_(std::move(scene)), truth_(scene_), lamp_(scene_), light_path_(scene_, truth_) {}
+    : scene_(std::move(scene)), truth_(scene_), lamp_(scene_), light_path_(scene_, truth_), charge_(scene_, truth_) {}
 
 ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
   assert(request.exposure > Duration::zero());
@@ -45,15 +45,18 @@ ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
   pose.positions[index_of(Axis::Carriage)] = carriage_of(scene_.stage, request.target);
   pose.positions[index_of(Axis::FilterWheel)] = slot_of(scene_, request.wavelength);
   pose.last_moves.fill(request.move);
+  for (const Axis axis : stage::kAllAxes) {
+    const double half_play = 0.5 * scene_.stage.axes[index_of(axis)].backlash;
+    pose.lags[index_of(axis)] = request.approach == Approach::FromBelow ? -half_play : half_play;
+  }
 
   const double length_s = scene_.scene_seconds(request.exposure);
   const double to_s = request.at_scene_s + length_s;
-  const double light = light_path_.electron_rate(pose) * length_s * lamp_.mean(request.at_scene_s, to_s);
-  const DetectorSpec& detector = scene_.detector;
-  const Exposure exposure{.number = request.exposure_number,
-                          .light_electrons = after_nonlinearity(detector, light, truth_.nonlinearity()),
-                          .dark_electrons = detector.dark_dn_per_s * detector.electrons_per_dn * length_s};
-  return {.region = draw_region(detector, exposure, scene_.seed),
+  Exposure exposure = charge_.collect(light_path_.rate(pose) * length_s, lamp_.mean(request.at_scene_s, to_s),
+                                      request.at_scene_s, length_s);
+  exposure.number = request.exposure_number;
+  exposure.place = light_path_.place(pose);
+  return {.region = draw_region(scene_.detector, exposure, scene_.seed),
           .monitor = lamp_.monitor(request.at_scene_s, to_s, request.exposure_number)};
 }
 

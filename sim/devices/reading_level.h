@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/geometry.h"
+#include "sim/devices/detector_charge.h"
 #include "sim/devices/detector_noise.h"
 #include "sim/optics/lamp.h"
 #include "sim/optics/light_path.h"
@@ -11,6 +12,9 @@
 #include "sim/scene/truth.h"
 
 namespace gonio::sim {
+
+/// From which side the arms have come to where they stand, for backlash.
+enum class Approach : std::uint8_t { FromBelow, FromAbove };
 
 /// One exposure to be made with everything at rest.
 struct ReadingRequest {
@@ -22,6 +26,7 @@ struct ReadingRequest {
   double at_scene_s = 0.0;            ///< when it opens, in scene seconds from the start
   std::uint64_t move = 1;             ///< which move brought the stage there: the key of repeat error and placing
   std::uint64_t exposure_number = 1;  ///< the key of its noise: each its own
+  Approach approach = Approach::FromBelow;
 };
 
 struct ReadingAnswer {
@@ -29,8 +34,8 @@ struct ReadingAnswer {
   MonitorReading monitor;
 };
 
-/// Readings without a stage, wires or frames: the same truth, lamp and noise as `Instrument` and `CameraModel` give,
-/// for runs of many repetitions. Immutable; threads: any.
+/// Readings without a stage, wires or frames: the same truth, lamp, effects and noise as `Instrument` and `CameraModel`
+/// give, for runs of many repetitions. Immutable; threads: any.
 class ReadingLevel {
  public:
   explicit ReadingLevel(Scene scene);
@@ -46,6 +51,7 @@ class ReadingLevel {
   Truth truth_;
   Lamp lamp_;
   LightPath light_path_;
+  DetectorCharge charge_;
 };
 
 }  // namespace gonio::sim

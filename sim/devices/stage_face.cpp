@@ -102,7 +102,7 @@ void StageFace::refresh(Instant now) {
     put(field, scaled(in_celsius(t), map_.temperature_scale_c, map_.at(field)));
   };
   temperature(Field::LampTemperature, environment.lamp);
-  temperature(Field::DetectorTemperature, environment.detector);
+  temperature(Field::DetectorTemperature, instrument_.detector_temperature(now));
   temperature(Field::RoomTemperature, environment.room);
   put(Field::Humidity, scaled(environment.humidity_percent, map_.humidity_scale_percent, map_.at(Field::Humidity)));
   refresh_gate();

@@ -45,7 +45,7 @@ StageModel::StageModel(const StageSpec& spec, double time_scale, const StageMemo
     const AxisSpec& axis_spec = spec.axes[a];
     const double home = std::clamp(0.0, axis_spec.low, axis_spec.high);
     axes_.emplace_back(axis_spec, spec.registers.axis_scale[a], time_scale, spec.following_error_s,
-                       memory.positions ? (*memory.positions)[a] : home);
+                       memory.positions ? (*memory.positions)[a] : home, memory.lags[a]);
   }
 }
 
@@ -202,7 +202,10 @@ std::uint16_t StageModel::status_word(Instant t) const {
 
 StageMemory StageModel::memory(Instant now) const {
   StageMemory memory{.boot_counter = boot_counter_, .positions = stage::PerAxis<double>{}, .moves = moves_};
-  for (const Axis a : stage::kAllAxes) (*memory.positions)[stage::index_of(a)] = axis(a).position(now);
+  for (const Axis a : stage::kAllAxes) {
+    (*memory.positions)[stage::index_of(a)] = axis(a).position(now);
+    memory.lags[stage::index_of(a)] = axis(a).lag(now);
+  }
   return memory;
 }
 

@@ -18,6 +18,7 @@ namespace gonio::sim {
 struct StageMemory {
   std::uint32_t boot_counter = 0;                   ///< before this power-up
   std::optional<stage::PerAxis<double>> positions;  ///< none: every axis stands at its home
+  stage::PerAxis<double> lags{};                    ///< of what is moved behind its motor: backlash
   std::uint64_t moves = 0;                          ///< ever made: numbers the draws of the repeat errors
 };
 

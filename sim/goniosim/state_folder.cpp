@@ -37,6 +37,7 @@ json to_json(const SimulatorState& state) {
   if (memory.stage.positions) axes = *memory.stage.positions;
   return {{"boot_counter", memory.stage.boot_counter},
           {"positions", axes},
+          {"lags", memory.stage.lags},
           {"moves", memory.stage.moves},
           {"exposures", memory.exposures},
           {"lit_exposures", memory.lit_exposures},
@@ -55,6 +56,9 @@ SimulatorState state_of(const json& text) {
     memory.stage.positions = stage::PerAxis<double>{};
     std::copy(positions.begin(), positions.end(), memory.stage.positions->begin());
   }
+  // A folder of before there was backlash has no lags.
+  const auto lags = text.value("lags", std::vector<double>());
+  if (lags.size() == stage::kAxisCount) std::copy(lags.begin(), lags.end(), memory.stage.lags.begin());
   memory.stage.moves = text.at("moves").get<std::uint64_t>();
   memory.exposures = text.at("exposures").get<std::uint64_t>();
   memory.lit_exposures = text.at("lit_exposures").get<std::uint64_t>();

@@ -19,16 +19,11 @@ std::uint64_t counter_of(double cell) {
 
 }  // namespace
 
-// The monitor's drift is a stationary Gaussian process with correlation exp(-dt^2 / 2 tau^2), as a sum of waves with
-// frequencies from N(0, 1/tau^2) (random Fourier features: Rahimi and Recht 2007).
 Lamp::Lamp(const Scene& scene)
-    : seed_(scene.seed), spec_(scene.lamp), wave_phase_(kTurn * Chance(scene.seed, Purpose::LampPhase).uniform()) {
-  for (std::size_t k = 0; k < drift_.size(); ++k) {
-    Chance chance(seed_, Purpose::MonitorDrift, k);
-    drift_[k].frequency = chance.normal() / spec_.correlation_s;
-    drift_[k].phase = kTurn * chance.uniform();
-  }
-}
+    : seed_(scene.seed),
+      spec_(scene.lamp),
+      wave_phase_(kTurn * Chance(scene.seed, Purpose::LampPhase).uniform()),
+      drift_(scene.seed, Purpose::MonitorDrift, scene.lamp.correlation_s) {}
 
 double Lamp::slow_mean(double from_s, double to_s) const {
   double relative = 1.0 + spec_.drift_per_hour * 0.5 * (from_s + to_s) / 3600.0;
@@ -60,12 +55,8 @@ double Lamp::mean(double from_s, double to_s) const {
 
 double Lamp::monitor_drift(double at_s) const {
   if (spec_.u_after_monitor == 0.0) return 0.0;
-  // The stated uncertainty is that of a difference of two readings: each has it / sqrt(2); a wave has variance 1/2.
-  const double amplitude =
-      spec_.u_after_monitor / std::numbers::sqrt2 * std::sqrt(2.0 / static_cast<double>(drift_.size()));
-  double sum = 0.0;
-  for (const Component& c : drift_) sum += std::cos(c.frequency * at_s + c.phase);
-  return amplitude * sum;
+  // The stated uncertainty is that of a difference of two readings: each has it / sqrt(2).
+  return drift_.at(at_s, spec_.u_after_monitor / std::numbers::sqrt2);
 }
 
 double Lamp::monitored(double from_s, double to_s) const {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
+#include "sim/optics/slow_wander.h"
 #include "sim/scene/scene.h"
 
 namespace gonio::sim {
@@ -29,10 +29,6 @@ class Lamp {
   [[nodiscard]] double monitor_now(double at_s) const;
 
  private:
-  struct Component {
-    double frequency = 0.0;  ///< rad/s
-    double phase = 0.0;
-  };
   [[nodiscard]] double slow_mean(double from_s, double to_s) const;
   [[nodiscard]] double flicker_mean(double from_s, double to_s) const;
   [[nodiscard]] double monitor_drift(double at_s) const;
@@ -40,7 +36,7 @@ class Lamp {
   std::uint64_t seed_;
   LampSpec spec_;
   double wave_phase_;
-  std::array<Component, 24> drift_{};
+  SlowWander drift_;
 };
 
 }  // namespace gonio::sim

@@ -21,6 +21,9 @@ enum class Purpose : std::uint32_t {
   Pixels = 12,           ///< counter: exposure
   Radiometer = 13,       ///< counter: meter, sample
   RadiometerRange = 14,  ///< counter: meter, range
+  DarkWander = 21,       ///< counter: component
+  OffsetWander = 22,     ///< counter: component
+  Speckle = 23,          ///< counter: place
 };
 
 /// A stream of chance that depends on nothing but (seed, purpose, counter): how often one effect draws never shifts

@@ -71,6 +71,7 @@ std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
 std::string detector_section(const Scene& scene, const WireAddresses& addresses) {
   if (std::string meter = radiometer_detector_section(scene); !meter.empty()) return meter;
   const DetectorSpec& spec = scene.detector;
+  const ToldSpec& told = scene.told;
   const Aperture aperture = aperture_of(spec);
   constexpr double kRounding = 1.0 / 12.0;  // the variance of rounding to whole DN
   return fmt::format(
@@ -78,12 +79,13 @@ std::string detector_section(const Scene& scene, const WireAddresses& addresses)
       "pixel_format = \"Mono12\"\npacket_size_bytes = 1400\nshortest_exposure_s = {}\nlongest_exposure_s = {}\n"
       "gain_db = 0.0\nframes_at_most = {}\n"
       "\n[detector.aperture]\ncentre_x_px = {}\ncentre_y_px = {}\nradius_px = {}\n"
-      "\n[detector.model]\nelectrons_per_dn = {}\nread_noise_dn = {}\nfull_scale_dn = {}\nexposure_offset_s = 0.0\n"
-      "u_exposure_offset_s = 0.0\nu_linearity = {}\nu_dark_drift_dn_per_s = 0.0\n",
+      "\n[detector.model]\nelectrons_per_dn = {}\nread_noise_dn = {}\nfull_scale_dn = {}\nexposure_offset_s = {:.10g}\n"
+      "u_exposure_offset_s = {:.10g}\nu_linearity = {}\nu_dark_drift_dn_per_s = {:.10g}\n",
       addresses.camera_address, spec.serial, spec.width_px, spec.height_px, wall_s(scene, spec.shortest_exposure_s),
       wall_s(scene, spec.longest_exposure_s), spec.frames_at_most, aperture.centre_x_px, aperture.centre_y_px,
       aperture.radius_px, spec.electrons_per_dn, std::sqrt(spec.read_noise_dn * spec.read_noise_dn + kRounding),
-      static_cast<int>(kFullScaleDn), spec.u_linearity);
+      static_cast<int>(kFullScaleDn), wall_s(scene, told.exposure_offset_s), wall_s(scene, told.u_exposure_offset_s),
+      told.u_linearity.value_or(spec.u_linearity), told.u_dark_drift_dn_per_s * scene.time_scale);
 }
 
 std::string uncertainty_sections(const Scene& scene) {
@@ -91,14 +93,18 @@ std::string uncertainty_sections(const Scene& scene) {
   const LampSpec& lamp = scene.lamp;
   const RadiometerSpec* meter = radiometer_at(scene, RadiometerPlace::Monitor);
   const double monitor = lamp.power * (meter == nullptr ? 1.0 : meter->watts);
+  const ToldSpec& told = scene.told;
   return fmt::format(
       "\n[angles]\nu_zero_theta_i_deg = {:.10g}\nu_zero_theta_r_deg = {:.10g}\nu_zero_phi_r_deg = {:.10g}\n"
-      "u_repeat_deg = {:.10g}\ndetector_half_cone_deg = 0.5\nsource_half_cone_deg = 0.5\n"
+      "u_repeat_deg = {:.10g}\ndetector_half_cone_deg = {:.10g}\nsource_half_cone_deg = {:.10g}\n"
       "\n[lamp]\nu_after_monitor = {}\ncorrelation_s = {}\nu_reproducibility = {}\nmonitor_low = {:.6g}\nmonitor_high "
       "= {:.6g}\n",
-      in_degrees(angles.u_zero_theta_i), in_degrees(angles.u_zero_theta_r), in_degrees(angles.u_zero_phi_r),
-      in_degrees(angles.u_repeat), lamp.u_after_monitor, wall_s(scene, lamp.correlation_s), lamp.u_reproducibility,
-      0.2 * monitor, 5.0 * monitor);
+      in_degrees(told.u_zero_theta_i.value_or(angles.u_zero_theta_i)),
+      in_degrees(told.u_zero_theta_r.value_or(angles.u_zero_theta_r)),
+      in_degrees(told.u_zero_phi_r.value_or(angles.u_zero_phi_r)), in_degrees(told.u_repeat.value_or(angles.u_repeat)),
+      in_degrees(told.detector_half_cone), in_degrees(told.source_half_cone),
+      told.u_after_monitor.value_or(lamp.u_after_monitor), wall_s(scene, lamp.correlation_s),
+      told.u_reproducibility.value_or(lamp.u_reproducibility), 0.2 * monitor, 5.0 * monitor);
 }
 
 }  // namespace

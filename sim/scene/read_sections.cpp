@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "sim/scene/read_effects.h"
+
 namespace gonio::sim {
 namespace {
 
@@ -153,6 +155,8 @@ void read_sections(TomlReader& own, TomlReader* bench, Scene& scene) {
   if (auto t = from("angles").optional_table("angles")) read_angles(*t, scene.angles);
   if (auto t = from("environment").optional_table("environment")) read_environment(*t, scene.environment);
   read_radiometers(from("radiometers"), scene);
+  if (auto t = from("effects").optional_table("effects")) read_effects(*t, scene);
+  if (auto t = from("told").optional_table("told")) read_told(*t, scene.told);
   TomlReader& filters = from("filters");
   for (TomlReader& t : filters.tables("filters")) scene.filters.push_back(read_filter(t));
   if (scene.filters.empty()) filters.fail("filters", ErrorCode::MissingKey, "no [[filters]]", "at least one filter");

@@ -10,8 +10,10 @@
 #include "protocol/stage/axis.h"
 #include "protocol/stage/register_map.h"
 #include "reflectance/surface/surface.h"
+#include "sim/scene/effects_spec.h"
 #include "sim/scene/radiometer_spec.h"
 #include "sim/scene/reference_spec.h"
+#include "sim/scene/told_spec.h"
 
 namespace gonio::sim {
 
@@ -55,6 +57,7 @@ struct DetectorSpec {
   double shortest_exposure_s = 0.001;
   double longest_exposure_s = 0.512;
   int frames_at_most = 64;
+  SpeckleSpec speckle;
   double control_heartbeat_wall_s = 3.0;  ///< a silent controller of the camera is released after so long; wall time
 };
 inline constexpr double kFullScaleDn = 4095.0;  ///< 12 bits
@@ -67,6 +70,7 @@ struct AxisSpec {
   double acceleration = 1.0;
   double settle_s = 0.0;
   double window = 0.0;
+  double backlash = 0.0;  ///< the play between the motor, which has the encoder, and what it moves
 };
 
 /// The stage; scene time but where the name says wall.
@@ -111,6 +115,8 @@ struct Scene {
   EnvironmentSpec environment;
   std::vector<FilterSpec> filters;
   std::vector<RadiometerSpec> radiometers;  ///< one before the sample and one before the lamp at most
+  EffectsSpec effects;
+  ToldSpec told;
 
   [[nodiscard]] double scene_seconds(Duration wall) const { return in_seconds(wall) * time_scale; }
   [[nodiscard]] Duration wall(double scene_s) const { return seconds(scene_s / time_scale); }

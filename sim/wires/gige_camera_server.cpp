@@ -50,7 +50,7 @@ Result<std::unique_ptr<GigeCameraServer>> GigeCameraServer::start(LiveInstrument
         .shortest_exposure_us = in_microseconds(parts.camera.shortest_exposure()),
         .longest_exposure_us = in_microseconds(parts.camera.longest_exposure()),
         .most_gain_db = CameraModel::kMostGainDb,
-        .temperature_c = in_celsius(parts.camera.temperature()),
+        .temperature_c = in_celsius(parts.camera.temperature(parts.now)),
         .heartbeat_timeout_ms = static_cast<std::uint32_t>(std::lround(1000.0 * detector.control_heartbeat_wall_s))};
   });
   std::unique_ptr<GigeCameraServer> server(
