@@ -128,6 +128,18 @@ void append_sentence_part(std::string& text, std::string_view separator, std::st
   text += part;
 }
 
+// What a device or a user's file said may hold anything: a line's end, or what a terminal takes for a command.
+std::string on_one_line(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_control = byte < 0x20 || byte == 0x7F;
+    line += is_control ? std::string{'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 0xFU]} : std::string(1, c);
+  }
+  return line;
+}
+
 std::string location_text(const InputLocation& where) {
   std::string text = where.file;
   if (where.line > 0) text += ":" + std::to_string(where.line);
@@ -159,7 +171,7 @@ std::string describe(const Error& error) {
   append_sentence_part(text, ": ", error.seen);
   append_sentence_part(text, "; limit: ", error.limit);
   append_sentence_part(text, " ", "[" + std::string(traits(error.code).name) + "]");
-  return text;
+  return on_one_line(text);
 }
 
 std::string explain(const Error& error) {

@@ -103,7 +103,7 @@ struct Error {
   friend bool operator==(const Error&, const Error&) = default;
 };
 
-/// One sentence: who, what was tried, what was seen, the limit. No newline.
+/// One sentence: who, what was tried, what was seen, the limit. No newline: control characters are shown as "\x0A".
 [[nodiscard]] std::string describe(const Error& error);
 /// As `describe`, then what it means for the data and what to do, each on its own line.
 [[nodiscard]] std::string explain(const Error& error);

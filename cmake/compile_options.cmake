@@ -26,3 +26,12 @@ if(GONIO_SANITIZE)
     target_compile_options(gonio_options INTERFACE -fno-sanitize-recover=all)
   endif()
 endif()
+if(GONIO_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "GONIO_FUZZ needs clang: libFuzzer comes with it (preset fuzz)")
+  endif()
+  # float-cast-overflow: a number of a file or a wire that is cast to an integer it does not fit is what fuzzers find.
+  target_compile_options(gonio_options INTERFACE
+    -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(gonio_options INTERFACE -fsanitize=address,undefined)
+endif()

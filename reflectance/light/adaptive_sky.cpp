@@ -73,8 +73,9 @@ class CellRule {
 
 void sort_apart(std::vector<double>& cuts) {
   std::ranges::sort(cuts);
-  const auto doubled = std::ranges::unique(cuts, [](double a, double b) { return b - a < 1e-13; });
-  cuts.erase(doubled.begin(), doubled.end());
+  // Not ranges::unique: its subrange does not build with clang 14.
+  const auto doubled = std::unique(cuts.begin(), cuts.end(), [](double a, double b) { return b - a < 1e-13; });
+  cuts.erase(doubled, cuts.end());
 }
 
 std::vector<Cell> first_cells(const Sky& sky, const std::optional<Direction>& hard) {

@@ -39,8 +39,9 @@ std::vector<double> elevation_breaks(const Sky& sky) {
   for (const Angle theta : sky.theta_breaks()) cuts.push_back(0.5 * kPi - theta.si());
   if (const std::optional<Direction> peak = sky.peak()) cuts.push_back(peak->elevation().si());
   std::ranges::sort(cuts);
-  const auto doubled = std::ranges::unique(cuts, [](double a, double b) { return b - a < 1e-12; });
-  cuts.erase(doubled.begin(), doubled.end());
+  // Not ranges::unique: its subrange does not build with clang 14.
+  const auto doubled = std::unique(cuts.begin(), cuts.end(), [](double a, double b) { return b - a < 1e-12; });
+  cuts.erase(doubled, cuts.end());
   cuts.back() = 0.5 * kPi;
   return cuts;
 }

@@ -107,6 +107,11 @@ json set_fault(const json& line, LiveInstrument& instrument, StageWire& stage, G
   return {{"ok", true}};
 }
 
+// A refusal repeats what was sent, which need not be UTF-8.
+std::string text_of(const json& answer) {
+  return answer.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 json answer_line(const json& line, LiveInstrument& instrument, StageWire& stage, GigeCameraServer& camera) {
   if (line.contains("fault")) return set_fault(line, instrument, stage, camera);
   const std::string query = line.value("query", "");
@@ -120,9 +125,9 @@ json answer_line(const json& line, LiveInstrument& instrument, StageWire& stage,
 std::string answer_control(const std::string& line, LiveInstrument& instrument, StageWire& stage,
                            GigeCameraServer& camera) {
   try {
-    return answer_line(json::parse(line), instrument, stage, camera).dump();
+    return text_of(answer_line(json::parse(line), instrument, stage, camera));
   } catch (const json::exception& trouble) {
-    return refusal(trouble.what()).dump();
+    return text_of(refusal(trouble.what()));
   }
 }
 

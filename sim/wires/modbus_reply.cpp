@@ -15,6 +15,7 @@
 namespace gonio::sim {
 namespace {
 
+constexpr std::uint8_t kExceptionBit = 0x80;
 constexpr std::size_t kPdu = 7;  // where the function code stands in a TCP frame
 constexpr unsigned kMostRead = 125;
 constexpr unsigned kMostWritten = 123;
@@ -166,6 +167,8 @@ std::vector<std::uint8_t> ModbusReply::answer(std::span<const std::uint8_t> requ
   }
   std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> frame{};
   const ssize_t n = ::recv(impl_->ours.get(), frame.data(), frame.size(), MSG_DONTWAIT);
+  // libmodbus adds the bit, which a function that has it already would lose: 0x83 would be answered as a good 0x03.
+  if (exception != 0) frame[kPdu] |= kExceptionBit;
   return n <= 0 ? std::vector<std::uint8_t>() : std::vector<std::uint8_t>(frame.begin(), frame.begin() + n);
 }
 

@@ -46,6 +46,13 @@ TEST(Error, SpeaksInOneSentenceWithPlaceDeedSightAndLimit) {
             "[out-of-limits]");
 }
 
+TEST(Error, StaysOnItsLineWhateverADeviceSaid) {
+  const Error error{
+      .code = ErrorCode::BadReply, .device = "monitor", .tried = "ask", .seen = "1.5\n\x1B[2J\x7F, 22 \u00B0C"};
+
+  EXPECT_EQ(describe(error), "monitor: ask: 1.5\\x0A\\x1B[2J\\x7F, 22 \u00B0C [bad-reply]");
+}
+
 TEST(Error, ExplainsWhatToDo) {
   const Error error{.code = ErrorCode::Stopped, .device = "stage", .tried = "move", .seen = "STOP"};
 

@@ -133,6 +133,12 @@ TEST_F(ModbusServerTest, AnswersWhatItCannotDoWithTheExceptionsOfTheSpecificatio
       << "wrong key";
 }
 
+TEST_F(ModbusServerTest, RefusesAFunctionThatOnlyAnExceptionMayBear) {
+  Master master(server_->port());
+
+  EXPECT_EQ(master.ask("0001 0000 0006 01 83 0001 0002", 9), bytes("0001 0000 0003 01 83 01"));
+}
+
 TEST_F(ModbusServerTest, AnswersRequestsThatArriveTogetherOneByOne) {
   Master master(server_->port());
 
