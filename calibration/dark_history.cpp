@@ -10,6 +10,7 @@ struct Sums {
   Instant at{};
   double frames = 0.0;
   double level = 0.0;       // sums over frames
+  double raw_level = 0.0;   // before any map: what the dark current's shot noise goes with
   double variance = 0.0;    // spatial
   double per_pixels = 0.0;  // 1 / n
 };
@@ -24,7 +25,7 @@ std::optional<double> dark_rate(const std::map<ExposureRung, Sums>& rungs, std::
   std::optional<std::pair<double, double>> shortest, longest;  // exposure, level
   for (const auto& [rung, sums] : rungs) {
     if (rung.gain_mdb != gain_mdb) continue;
-    const std::pair<double, double> here{seconds_of(rung), sums.level / sums.frames};
+    const std::pair<double, double> here{seconds_of(rung), sums.raw_level / sums.frames};
     if (!shortest) shortest = here;
     longest = here;  // rungs ascend by exposure
   }
@@ -65,7 +66,8 @@ DarkHistory::DarkHistory(const ScanReadings& scan, const DetectorModel& detector
       Sums& sums = by_visit[{start, reading.visit_id}][rung_of(frame)];
       if (sums.frames == 0.0) sums.at = reading.at;
       sums.frames += 1.0;
-      sums.level += frame.region.mean;
+      sums.level += frame.signal_dn();
+      sums.raw_level += frame.region.mean;
       sums.variance += frame.region.m2;
       sums.per_pixels += 1.0 / frame.region.n;
     }

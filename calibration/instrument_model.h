@@ -1,10 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include "base/units.h"
 
 namespace gonio::calibration {
+
+/// Where a reading's noise is taken from.
+enum class NoiseSource : std::uint8_t {
+  PhotonTransfer,  ///< the model below: as well known as its constants, from one frame on
+  RepeatedFrames,  ///< the scatter of the reading's own frames, worth their number less one; a single frame takes the
+                   ///< model
+};
 
 /// What calibration knows of the detector: a photon-transfer model (EMVA 1288) and its uncertainties, all k = 1.
 struct DetectorModel {
@@ -15,6 +23,7 @@ struct DetectorModel {
   double u_linearity = 0.0;              ///< relative, at full scale, error growing with the signal; shared by the scan
   /// Of exposure: what interpolation between two darks may miss; shared between them.
   double u_dark_drift_dn_per_s = 0.0;
+  NoiseSource noise = NoiseSource::PhotonTransfer;
 };
 
 /// Standard uncertainties (k = 1) of the directions, shared by the scan (zeros of the arms) and from move to move.

@@ -31,6 +31,10 @@ Result<void> check(const RawReading& reading) {
       return failure(refusal(reading, ErrorCode::Saturated, fmt::format("{} saturated pixels", frame.region.saturated),
                              "none inside the aperture"));
     }
+    if (frame.reduced.has_value() != reading.frames.front().reduced.has_value()) {
+      return failure(refusal(reading, ErrorCode::IncompleteData, "some frames reduced by maps and some not",
+                             "all of them, or none"));
+    }
     if (frame.region.n == 0 || !(frame.exposure_s > 0.0) || !(frame.monitor_mean > 0.0)) {
       return failure(refusal(
           reading, ErrorCode::IncompleteData,
@@ -62,12 +66,28 @@ Geometry mean_geometry(const std::vector<RawFrame>& frames) {
           .phi_r = first.phi_r + share * sum.phi_r};
 }
 
+// Of a frame's net mean, DN^2.
+double noise_variance(const RawFrame& frame, double net, const DarkLevel& dark, const DetectorModel& detector) {
+  if (frame.reduced) return frame.reduced->u_noise_dn * frame.reduced->u_noise_dn;
+  const double shot = std::max(0.0, net) * gain_factor(frame) / detector.electrons_per_dn;
+  return (dark.pixel_variance_dn2 + shot) / frame.region.n;
+}
+
 struct FrameTerm {
   double net = 0.0;       // DN
   double light = 0.0;     // (t + t0) G m
   double variance = 0.0;  // of net, DN^2, without the dark level's own
   double u_light = 0.0;   // from the monitor's noise
 };
+
+// Of the sum of the net means, from their scatter about q times their light: sqrt(m) s. The monitor's noise is in it
+// too.
+double scatter(const std::vector<FrameTerm>& terms, double q) {
+  double squares = 0.0;
+  for (const FrameTerm& term : terms) squares += std::pow(term.net - q * term.light, 2);
+  const auto m = static_cast<double>(terms.size());
+  return std::sqrt(squares * m / (m - 1.0));
+}
 
 }  // namespace
 
@@ -86,9 +106,8 @@ Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory
     }
     const double gain = gain_factor(frame);
     const double exposure = (frame.exposure_s + detector.exposure_offset_s.value) * gain;
-    FrameTerm term{.net = frame.region.mean - dark->level_dn, .light = exposure * frame.monitor_mean};
-    term.variance =
-        (dark->pixel_variance_dn2 + std::max(0.0, term.net) * gain / detector.electrons_per_dn) / frame.region.n;
+    FrameTerm term{.net = frame.signal_dn() - dark->level_dn, .light = exposure * frame.monitor_mean};
+    term.variance = noise_variance(frame, term.net, *dark, detector);
     net += term.net;
     light += term.light;
     variance += term.variance;
@@ -109,6 +128,10 @@ Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory
                         .at = reading.at};
   for (const FrameTerm& term : terms) {
     out.frame_chi2 += std::pow(term.net - out.q * term.light, 2) / (term.variance + std::pow(out.q * term.u_light, 2));
+  }
+  if (detector.noise == NoiseSource::RepeatedFrames && terms.size() > 1) {
+    out.u_noise = scatter(terms, out.q) / light;
+    out.noise_dof = out.frame_dof;
   }
   for (auto& [rung, share] : shares) {
     share.dq_dlevel /= light;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "base/geometry.h"
@@ -23,9 +24,10 @@ struct DarkShare {
 /// frames of different exposures combine as their shot noise asks.
 struct NormalisedReading {
   double q = 0.0;
-  double u_noise = 0.0;      ///< of q: photon transfer, random
-  double u_monitor = 0.0;    ///< of q: the monitor's noise over the exposures, random
-  double dlnq_dt0 = 0.0;     ///< 1/s
+  double u_noise = 0.0;  ///< of q, random: by photon transfer, or from the frames' own scatter
+  double noise_dof = std::numeric_limits<double>::infinity();  ///< how well u_noise is known
+  double u_monitor = 0.0;                                      ///< of q: the monitor's noise over the exposures, random
+  double dlnq_dt0 = 0.0;                                       ///< 1/s
   double mean_net_dn = 0.0;  ///< of a pixel of a frame: what the detector's linearity depends on
   double frame_chi2 = 0.0;   ///< of its frames about q, by the noise model; `frame_dof` degrees of freedom
   double frame_dof = 0.0;

@@ -37,7 +37,10 @@ class Terms {
  private:
   void add_random(ComponentSource source, std::string_view name, double u, std::string_view unit, double per_sd,
                   double degrees_of_freedom = INFINITY) {
-    const std::uint32_t index = table_.index({source, 0, 0, 0}, [&] {
+    // Known equally well, it is one component: a reading of five frames and one of nine have two.
+    const bool is_known = std::isinf(degrees_of_freedom);
+    const std::int64_t worth = is_known ? 0 : std::llround(degrees_of_freedom);
+    const std::uint32_t index = table_.index({source, worth, 0, 0}, [&] {
       return Component{std::string(name), ComponentKind::Random, u, std::string(unit), degrees_of_freedom};
     });
     random_.push_back({index, per_steradian(std::abs(per_sd))});
@@ -55,7 +58,7 @@ class Terms {
     const double dof = instrument_.lamp.reproducibility_dof;
     const double u_placing = instrument_.lamp.u_reproducibility;
     add_random(ComponentSource::SampleNoise, "noise of the sample reading", 0.0, "sr^-1",
-               p_.dvalue_dq * p_.sample.u_noise);
+               p_.dvalue_dq * p_.sample.u_noise, p_.sample.noise_dof);
     add_random(ComponentSource::SampleMonitor, "monitor noise of the sample reading", 0.0, "sr^-1",
                p_.dvalue_dq * p_.sample.u_monitor);
     add_random(ComponentSource::SampleReproducibility, "reproducibility of the sample reading", u_placing, "1",
@@ -76,7 +79,8 @@ class Terms {
                  fmt::format("reference reading {}", p_.reference_id), 1.0, "of its own u", std::copysign(all, -f));
       return;
     }
-    add_random(ComponentSource::ReferenceNoise, "noise of the reference reading", 0.0, "sr^-1", noise);
+    add_random(ComponentSource::ReferenceNoise, "noise of the reference reading", 0.0, "sr^-1", noise,
+               p_.reference.noise_dof);
     add_random(ComponentSource::ReferenceMonitor, "monitor noise of the reference reading", 0.0, "sr^-1", monitor);
     add_random(ComponentSource::ReferenceReproducibility, "reproducibility of the reference reading", u_placing, "1",
                f * u_placing, instrument_.lamp.reproducibility_dof);

@@ -23,9 +23,22 @@ struct RegionMoments {
   friend bool operator==(const RegionMoments&, const RegionMoments&) = default;
 };
 
+/// The mean that a frame's light has by the maps of its detector (detector_maps.h): dark map subtracted, linearised,
+/// divided by the flat field.
+struct ReducedMean {
+  std::uint32_t n = 0;   ///< pixels that counted
+  double mean_dn = 0.0;  ///< signed
+  /// Of the mean, from this frame's noise by the photon-transfer model (EMVA 1288 release 4.0, eq 5): random.
+  double u_noise_dn = 0.0;
+  /// Of the mean, from the maps' own noise: the same error in every frame that was reduced with them.
+  double u_maps_dn = 0.0;
+  friend bool operator==(const ReducedMean&, const ReducedMean&) = default;
+};
+
 /// One frame with what was latched over exactly its exposure.
 struct RawFrame {
   RegionMoments region;
+  std::optional<ReducedMean> reduced;  ///< where the detector has maps
   double exposure_s = 0.0;
   double gain_db = 0.0;
   double monitor_mean = 0.0;
@@ -33,6 +46,8 @@ struct RawFrame {
   Geometry at_open;         ///< encoders at the start and the end of the exposure, as angles
   Geometry at_close;
   double detector_temperature_c = 0.0;
+  /// What the light is taken from: the reduced mean where there is one. DN.
+  [[nodiscard]] double signal_dn() const { return reduced ? reduced->mean_dn : region.mean; }
 };
 
 /// One reading as stored: repeated frames of one target at one geometry.

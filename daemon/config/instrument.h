@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "base/units.h"
-#include "calibration/frame_reduction.h"
+#include "calibration/aperture_mask.h"
 #include "calibration/instrument_model.h"
 #include "drivers/links/serial_line.h"
 #include "drivers/stage_config.h"
