@@ -46,10 +46,19 @@ class StageLinks {
   std::optional<drivers::TcpModbusLink> halt_;
 };
 
+drivers::AravisCameraConfig camera_link_of(const DetectorConfig& detector) {
+  const bool is_usb = detector.link == CameraLinkKind::Usb3;
+  return {.address = detector.address,
+          .serial = detector.serial,
+          .transport = is_usb ? drivers::CameraTransport::Usb3 : drivers::CameraTransport::Gige};
+}
+
 drivers::GenicamCameraConfig camera_of(const DetectorConfig& detector) {
   return {.serial = detector.serial,
           .format = {.width = detector.width_px,
                      .height = detector.height_px,
+                     .offset_x = detector.offset_x_px,
+                     .offset_y = detector.offset_y_px,
                      .pixel_format = detector.pixel_format,
                      .packet_size_bytes = detector.packet_size_bytes},
           .settings = {.exposure = detector.shortest_exposure, .gain_db = detector.gain_db}};
@@ -61,7 +70,7 @@ struct Devices::Impl {
   Impl(const Instrument& of, const Clock& clock)
       : instrument(of),
         stage_links(instrument),
-        camera_link({.address = instrument.detector.address}),
+        camera_link(camera_link_of(instrument.detector)),
         stage(stage_links.motion(), instrument.stage, clock),
         halt_line(stage_links.halts(), stage_links.beats(), instrument.stage.registers),
         camera(camera_link, camera_of(instrument.detector), clock) {}

@@ -42,8 +42,10 @@ Engine::Engine(Config config, EngineDevices devices, StoreWriter& writer, const 
       halt_(devices.halt_line, clock, HaltPathConfig{.heartbeat_timeout = config_.instrument.stage.heartbeat_timeout},
             [this](const HaltPathReport& report) { on_halt(report); }),
       stage_actor_(devices.stage, config_.instrument.stage, [this](const StageAnswer& answer) { on_stage(answer); }),
-      detector_actor_(devices.detector, config_.instrument.detector.aperture,
-                      [this](DetectorActor::Answer answer) { on_detector(std::move(answer)); }),
+      detector_actor_(
+          devices.detector,
+          {config_.instrument.detector.aperture, config_.instrument.maps, config_.instrument.model.detector},
+          [this](DetectorActor::Answer answer) { on_detector(std::move(answer)); }),
       store_desk_(*this),
       calibrator_(std::make_unique<Worker>(kMostScansToCompute)) {
   store_thread_ =

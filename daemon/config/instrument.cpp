@@ -150,38 +150,6 @@ Shadow read_shadow(TomlReader table) {
           .source_arm = length(table, "source_arm_mm")};
 }
 
-calibration::ApertureMask read_aperture(TomlReader table, const DetectorConfig& detector) {
-  calibration::ApertureMask mask;
-  mask.centre_x_px = table.number("centre_x_px", {.least = 0.0, .most = detector.width_px - 1.0, .unit = "px"});
-  mask.centre_y_px = table.number("centre_y_px", {.least = 0.0, .most = detector.height_px - 1.0, .unit = "px"});
-  // The whole circle must lie on the sensor: a cut one would not see what the certificate's spot was.
-  const double reach = std::min(std::min(mask.centre_x_px, detector.width_px - 1.0 - mask.centre_x_px),
-                                std::min(mask.centre_y_px, detector.height_px - 1.0 - mask.centre_y_px));
-  mask.radius_px = table.number("radius_px", {.least = 1.0, .most = std::max(1.0, reach), .unit = "px"});
-  return mask;
-}
-
-DetectorConfig read_detector(TomlReader& table) {
-  constexpr std::array<std::string_view, 1> kKinds{"genicam"};
-  constexpr std::array<std::string_view, 3> kFormats{"Mono8", "Mono12", "Mono16"};
-  (void)table.choice("kind", kKinds);
-  DetectorConfig detector;
-  detector.address = table.text("address");
-  detector.serial = table.text("serial");
-  detector.width_px = static_cast<int>(table.integer("width_px", 4, 16384));
-  detector.height_px = static_cast<int>(table.integer("height_px", 4, 16384));
-  detector.pixel_format = kFormats[table.choice("pixel_format", kFormats)];
-  detector.packet_size_bytes = static_cast<int>(table.integer("packet_size_bytes", 576, 9000));
-  const double shortest = table.number("shortest_exposure_s", kSomeTime);
-  detector.shortest_exposure = seconds(shortest);
-  detector.longest_exposure =
-      seconds(table.number("longest_exposure_s", {.least = shortest, .most = kAnHour, .unit = "s"}));
-  detector.gain_db = table.number("gain_db", {.least = 0.0, .most = 60.0, .unit = "dB"});
-  detector.frames_at_most = static_cast<int>(table.integer("frames_at_most", 1, 100000));
-  detector.aperture = read_aperture(table.table("aperture"), detector);
-  return detector;
-}
-
 calibration::DetectorModel read_detector_model(TomlReader table) {
   calibration::DetectorModel model;
   model.electrons_per_dn = table.number("electrons_per_dn", {.least = 1e-6, .most = 1e9});
@@ -191,6 +159,8 @@ calibration::DetectorModel read_detector_model(TomlReader table) {
                              .u = table.number("u_exposure_offset_s", {.least = 0.0, .most = 1.0, .unit = "s"})};
   model.u_linearity = table.number("u_linearity", kFraction);
   model.u_dark_drift_dn_per_s = table.number("u_dark_drift_dn_per_s", kNotNegative);
+  constexpr std::array<std::string_view, 2> kNoise{"photon-transfer", "repeated-frames"};  // as NoiseSource
+  model.noise = static_cast<calibration::NoiseSource>(table.choice_or("noise", 0, kNoise));
   return model;
 }
 
@@ -265,7 +235,13 @@ Result<Instrument> read_instrument(const std::string& path) {
                     .seen = "it does not exist or may not be read",
                     .where = InputLocation{path, 0, ""}});
   }
-  return parse_instrument(text, path);
+  Result<Instrument> instrument = parse_instrument(text, path);
+  if (!instrument || !instrument->detector.map_files.any()) return instrument;
+  auto maps = load_detector_maps(instrument->detector, std::filesystem::path(path).parent_path().string());
+  if (!maps) return failure(std::move(maps).error());
+  instrument->maps = std::move(*maps);
+  instrument->sha256 = sha256_hex(instrument->sha256 + instrument->maps->version);
+  return instrument;
 }
 
 const Filter* filter_for(const Instrument& instrument, Wavelength wavelength) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,8 +10,9 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "base/units.h"
-#include "calibration/aperture_mask.h"
+#include "calibration/detector_maps.h"
 #include "calibration/instrument_model.h"
+#include "daemon/config/detector_section.h"
 #include "drivers/links/serial_line.h"
 #include "drivers/stage_config.h"
 
@@ -49,21 +51,6 @@ struct Shadow {
   Length source_arm;
 };
 
-/// The imaging detector as instrument.toml has it. Exposures are shortest * 2^n, up to longest: wall time.
-struct DetectorConfig {
-  std::string address;  ///< not part of the configuration's hash
-  std::string serial;   ///< the camera must be this one
-  int width_px = 0;
-  int height_px = 0;
-  std::string pixel_format;
-  int packet_size_bytes = 0;
-  Duration shortest_exposure{};
-  Duration longest_exposure{};
-  double gain_db = 0.0;
-  int frames_at_most = 1;  ///< of one reading
-  calibration::ApertureMask aperture;
-};
-
 /// Half angles of the cones that the detector and the source fill, seen from the sample.
 struct ConeAngles {
   Angle detector_half;
@@ -88,6 +75,7 @@ struct Instrument {
   std::vector<Filter> filters;
   Shadow shadow;
   DetectorConfig detector;
+  std::shared_ptr<const calibration::DetectorMaps> maps;  ///< of the detector; nullptr: none configured
   ConeAngles cones;
   LampBand lamp;
   calibration::InstrumentModel model;
@@ -96,7 +84,8 @@ struct Instrument {
 /// Reads and checks the text. Errors: InvalidInput, UnknownKey, MissingKey, each with file, line, field and limit.
 /// `file` is the path shown in errors; `reference_directory` is resolved beside it.
 [[nodiscard]] Result<Instrument> parse_instrument(std::string_view text, const std::string& file);
-/// Errors: as parse_instrument, FileUnreadable.
+/// And the detector's maps, whose version becomes part of the hash. Errors: as parse_instrument and load_detector_maps,
+/// FileUnreadable.
 [[nodiscard]] Result<Instrument> read_instrument(const std::string& path);
 
 /// The filter for a wavelength, or nullptr: the one whose centroid lies within half its FWHM, the nearest of them.

@@ -22,8 +22,8 @@ DetectorActor::Answer refusal(const DetectorRequest& request, const Error& error
 
 }  // namespace
 
-DetectorActor::DetectorActor(drivers::Detector& detector, calibration::ApertureMask mask, Post post)
-    : detector_(detector), mask_(mask), post_(std::move(post)) {}
+DetectorActor::DetectorActor(drivers::Detector& detector, FrameReduction reduction, Post post)
+    : detector_(detector), reduction_(std::move(reduction)), post_(std::move(post)) {}
 
 void DetectorActor::on(const DetectorRequest& request, Instant now) {
   if (waiting_.size() >= kMostWaiting) {
@@ -74,12 +74,28 @@ void DetectorActor::collect(Instant now) {
   post_(FrameAnswer{ticket, collected ? summary_of(**collected) : failure(std::move(collected).error())});
 }
 
-Result<FrameSummary> DetectorActor::summary_of(const drivers::Frame& frame) const {
+Result<void> DetectorActor::prepare_for(const drivers::Frame& frame) {
+  if (prepared_ && prepared_->width == frame.width && prepared_->height == frame.height &&
+      prepared_->significant_bits == frame.significant_bits) {
+    return {};
+  }
   const auto full_scale = static_cast<std::uint16_t>((1U << static_cast<unsigned>(frame.significant_bits)) - 1U);
-  Result<calibration::RegionMoments> region =
-      calibration::reduce_frame(frame.pixels, frame.width, frame.height, full_scale, mask_);
-  if (!region) return failure(std::move(region).error());
-  return FrameSummary{.region = *region,
+  const auto maps = reduction_.maps ? std::optional(*reduction_.maps) : std::nullopt;
+  auto reducer = calibration::FrameReducer::prepare(frame.width, frame.height, full_scale, reduction_.aperture, maps,
+                                                    reduction_.noise);
+  if (!reducer) return failure(std::move(reducer).error());
+  prepared_ = Prepared{frame.width, frame.height, frame.significant_bits, std::move(*reducer)};
+  return {};
+}
+
+Result<FrameSummary> DetectorActor::summary_of(const drivers::Frame& frame) {
+  GONIO_TRY(prepare_for(frame));
+  const calibration::FrameReducer& reducer = prepared_->reducer;
+  const auto reduced = reducer.reduce(frame.pixels, in_seconds(frame.settings.exposure), frame.settings.gain_db);
+  if (!reduced) return failure(reduced.error());
+  return FrameSummary{.region = reduced->raw,
+                      .reduced = reduced->reduced,
+                      .maps_version = reducer.version(),
                       .settings = frame.settings,
                       .frame_id = frame.frame_id,
                       .camera_time_ns = frame.camera_time_ns,

@@ -88,7 +88,9 @@ struct StageAnswer {
 };
 struct FrameSummary {
   calibration::RegionMoments region;
-  drivers::ExposureSettings settings;  ///< as read back
+  std::optional<calibration::ReducedMean> reduced;  ///< with maps; not of a saturated frame
+  std::string maps_version;                         ///< what it was reduced with; empty: no maps
+  drivers::ExposureSettings settings;               ///< as read back
   std::uint64_t frame_id = 0;
   std::uint64_t camera_time_ns = 0;
   std::optional<double> temperature_c;  ///< nothing: the camera has no sensor

@@ -33,6 +33,8 @@ Duration settle_time(const drivers::StageConfig& stage, const drivers::MotionTar
 
 ReadingRecord reading_from(const FrameSummary& frame, const drivers::StageState& after, Instant middle) {
   return ReadingRecord{.region = frame.region,
+                       .reduced = frame.reduced,
+                       .maps_version = frame.maps_version,
                        .settings = frame.settings,
                        .camera_frame_id = frame.frame_id,
                        .camera_time_ns = frame.camera_time_ns,

@@ -198,7 +198,7 @@ void RecordWriter::operator()(const NewVisit& visit) {
 void RecordWriter::write_reading(const ReadingRecord& reading, std::int64_t attempt, std::int64_t visit,
                                  std::int64_t sequence) {
   Statement& insert = database_.statement(
-      "INSERT INTO reading VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+      "INSERT INTO reading VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
   attempt == 0 ? insert.bind_null() : insert.bind(attempt);
   visit == 0 ? insert.bind_null() : insert.bind(visit);
   insert.bind(sequence).bind(reading.used);
@@ -213,7 +213,21 @@ void RecordWriter::write_reading(const ReadingRecord& reading, std::int64_t atte
   insert.bind(reading.monitor_mean).bind(reading.monitor_se).bind(reading.monitor_samples);
   insert.bind(reading.lamp_temperature_c).bind(reading.detector_temperature_c);
   insert.bind(reading.room_temperature_c).bind(reading.humidity_percent);
-  insert.bind(reading.at.time_since_epoch().count()).bind(time_.utc_of(reading.at)).run();
+  insert.bind(reading.at.time_since_epoch().count()).bind(time_.utc_of(reading.at));
+  insert.bind(reading.camera_temperature_c.has_value()).run();
+  if (reading.reduced) write_reduction(*reading.reduced, reading.maps_version, database_.last_id());
+}
+
+void RecordWriter::write_reduction(const calibration::ReducedMean& reduced, const std::string& maps_version,
+                                   std::int64_t reading) {
+  database_.statement("INSERT INTO frame_reduction VALUES (?,?,?,?,?,?)")
+      .bind(reading)
+      .bind(maps_version)
+      .bind(reduced.n)
+      .bind(reduced.mean_dn)
+      .bind(reduced.u_noise_dn)
+      .bind(reduced.u_maps_dn)
+      .run();
 }
 
 void RecordWriter::operator()(const NewBrdf& brdf) {

@@ -69,11 +69,13 @@ struct ItemKey {
 struct ReadingRecord {
   bool used = true;  ///< false: a probe, or saturated; kept, never calibrated with
   calibration::RegionMoments region;
+  std::optional<calibration::ReducedMean> reduced;  ///< with maps; not of a saturated frame
+  std::string maps_version;                         ///< SHA-256 of the maps; empty: none
   drivers::ExposureSettings settings;
   std::uint64_t camera_frame_id = 0;
   std::uint64_t camera_time_ns = 0;
   std::optional<double> camera_temperature_c;  ///< nothing: the camera has no sensor
-  std::uint32_t gate_count = 0;  ///< the stage's number of this exposure
+  std::uint32_t gate_count = 0;                ///< the stage's number of this exposure
   stage::PerAxis<std::int32_t> open_counts{};
   stage::PerAxis<std::int32_t> close_counts{};
   double monitor_mean = 0.0;

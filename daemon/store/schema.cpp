@@ -249,7 +249,22 @@ constexpr const char* kVersion2 = R"sql(
 ALTER TABLE scan ADD COLUMN exposures_ns TEXT NOT NULL DEFAULT '';
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2};
+// Version 3: readings reduced by maps; cameras without a temperature. Until then such a camera's was stored as 0, which
+// no camera at work has.
+constexpr const char* kVersion3 = R"sql(
+ALTER TABLE reading ADD COLUMN camera_temperature_known INTEGER NOT NULL DEFAULT 1;
+UPDATE reading SET camera_temperature_known = 0 WHERE camera_temperature_c = 0;
+CREATE TABLE frame_reduction(
+  reading_id INTEGER PRIMARY KEY REFERENCES reading,
+  maps_sha256 TEXT NOT NULL,
+  counted_n INTEGER NOT NULL,
+  reduced_dn REAL NOT NULL,
+  u_noise_dn REAL NOT NULL,
+  u_maps_dn REAL NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

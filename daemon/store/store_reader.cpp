@@ -81,6 +81,12 @@ ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& st
   const Geometry* planned = is_visit ? nullptr : &points.at(static_cast<std::size_t>(*reading.point)).geometry;
   reading.frame.at_open = geometry_from_counts(row, 19, stage, planned);
   reading.frame.at_close = geometry_from_counts(row, 25, stage, planned);
+  if (!row.is_null(31)) {
+    reading.frame.reduced = calibration::ReducedMean{.n = static_cast<std::uint32_t>(row.integer(31)),
+                                                     .mean_dn = row.real(32),
+                                                     .u_noise_dn = row.real(33),
+                                                     .u_maps_dn = row.real(34)};
+  }
   return reading;
 }
 
@@ -337,12 +343,13 @@ class SqliteStoreReader final : public StoreReader {
         "m3_dn3, m4_dn4, saturated, exposure_ns, gain_db, monitor_mean, monitor_se, detector_temperature_c, "
         "open_theta_i_counts, open_theta_r_counts, open_phi_r_counts, open_phi_i_counts, open_carriage_counts, "
         "open_filter_wheel_counts, close_theta_i_counts, close_theta_r_counts, close_phi_r_counts, close_phi_i_counts, "
-        "close_carriage_counts, close_filter_wheel_counts FROM ("
+        "close_carriage_counts, close_filter_wheel_counts, counted_n, reduced_dn, u_noise_dn, u_maps_dn FROM ("
         "SELECT d.*, d.boottime_ns AS t, a.run_id, a.target, a.point_index, p.wavelength_nm FROM item i "
         "JOIN attempt a USING (attempt_id) JOIN reading d USING (attempt_id) "
         "JOIN point p ON p.scan_id = a.scan_id AND p.point_index = a.point_index WHERE i.scan_id = ?1 "
         "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, NULL, NULL, NULL FROM visit v "
-        "JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) WHERE used = 1 ORDER BY reading_id");
+        "JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) LEFT JOIN frame_reduction USING (reading_id) "
+        "WHERE used = 1 ORDER BY reading_id");
     query.bind(id);
     while (query.next()) collector.add(reading_from_row(query, stage, points, scales));
     return collector.take();

@@ -84,7 +84,7 @@ class DetectorActorTest : public testing::Test {
   ScriptedDetector detector{clock};
   std::vector<DetectorActor::Answer> answers;
   DetectorActor actor{detector,
-                      {.centre_x_px = 1.0, .centre_y_px = 1.0, .radius_px = 1.2},
+                      {.aperture = {.centre_x_px = 1.0, .centre_y_px = 1.0, .radius_px = 1.2}},
                       [this](DetectorActor::Answer answer) { answers.push_back(std::move(answer)); }};
   DiscreteExecutor executor{clock};
 };
