@@ -53,7 +53,7 @@ Result<drivers::ExposureSettings> InProcessCameraLink::exposure() {
 
 Result<std::optional<double>> InProcessCameraLink::temperature_c() {
   GONIO_TRY(ready());
-  return instrument_.with([](Parts& parts) { return std::optional(in_celsius(parts.camera.temperature())); });
+  return instrument_.with([](Parts& parts) { return std::optional(in_celsius(parts.camera.temperature(parts.now))); });
 }
 
 Result<void> InProcessCameraLink::start() {
