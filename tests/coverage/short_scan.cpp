@@ -29,19 +29,21 @@ std::vector<double> ladder(const sim::DetectorSpec& detector) {
 calibration::InstrumentModel ShortScan::stated_model(const sim::Scene& scene) const {
   constexpr double kRounding = 1.0 / 12.0;
   const sim::DetectorSpec& d = scene.detector;
+  const sim::ToldSpec& told = scene.told;
   return {.detector = {.electrons_per_dn = d.electrons_per_dn,
                        .read_noise_dn = std::sqrt(d.read_noise_dn * d.read_noise_dn + kRounding),
                        .full_scale_dn = sim::kFullScaleDn,
-                       .exposure_offset_s = {.value = 0.0, .u = plan_.u_exposure_offset_s},
-                       .u_linearity = d.u_linearity,
-                       .u_dark_drift_dn_per_s = plan_.u_dark_drift_dn_per_s},
-          .angles = {.u_zero_theta_i = scene.angles.u_zero_theta_i,
-                     .u_zero_theta_r = scene.angles.u_zero_theta_r,
-                     .u_zero_phi_r = scene.angles.u_zero_phi_r,
-                     .u_repeat = scene.angles.u_repeat},
-          .lamp = {.u_after_monitor = scene.lamp.u_after_monitor,
+                       .exposure_offset_s = {.value = told.exposure_offset_s,
+                                             .u = std::hypot(plan_.u_exposure_offset_s, told.u_exposure_offset_s)},
+                       .u_linearity = told.u_linearity.value_or(d.u_linearity),
+                       .u_dark_drift_dn_per_s = std::hypot(plan_.u_dark_drift_dn_per_s, told.u_dark_drift_dn_per_s)},
+          .angles = {.u_zero_theta_i = told.u_zero_theta_i.value_or(scene.angles.u_zero_theta_i),
+                     .u_zero_theta_r = told.u_zero_theta_r.value_or(scene.angles.u_zero_theta_r),
+                     .u_zero_phi_r = told.u_zero_phi_r.value_or(scene.angles.u_zero_phi_r),
+                     .u_repeat = told.u_repeat.value_or(scene.angles.u_repeat)},
+          .lamp = {.u_after_monitor = told.u_after_monitor.value_or(scene.lamp.u_after_monitor),
                    .correlation_s = scene.lamp.correlation_s,
-                   .u_reproducibility = scene.lamp.u_reproducibility}};
+                   .u_reproducibility = told.u_reproducibility.value_or(scene.lamp.u_reproducibility)}};
 }
 
 std::vector<PlannedPoint> ShortScan::points_of(const Plan& plan) {
