@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "calibration/reference_standard.h"
 #include "daemon/config/instrument.h"
+#include "sim/scene/read_scene.h"
 #include "sim/scene/spectralon_shape.h"
 #include "tests/sim/bench.h"
 
@@ -41,6 +44,34 @@ TEST(InstrumentToml, IsReadByTheDaemonAndSaysEverythingInWallTime) {
   EXPECT_DOUBLE_EQ(read->model.lamp.correlation_s, 90.0);
   EXPECT_DOUBLE_EQ(read->model.detector.read_noise_dn, std::sqrt(2.25 + 1.0 / 12.0));
   EXPECT_DOUBLE_EQ(in_degrees(read->model.angles.u_zero_phi_r), 0.04);
+}
+
+TEST(InstrumentToml, OfEverySceneThatIsShippedIsReadByTheDaemon) {
+  for (const auto& entry : std::filesystem::directory_iterator(GONIO_SCENES)) {
+    if (entry.path().stem() == "bench") continue;
+    const auto scene = read_scene(entry.path().string());
+    ASSERT_TRUE(scene.has_value()) << describe(scene.error());
+
+    const auto read = daemon::parse_instrument(instrument_toml(*scene, {}), "instrument.toml");
+
+    EXPECT_TRUE(read.has_value()) << entry.path() << ": " << describe(read.error());
+  }
+}
+
+TEST(InstrumentToml, TellsWhatTheSceneStatesInWallTime) {
+  Scene scene = full_scene();
+  scene.told.u_linearity = 0.02;
+  scene.told.exposure_offset_s = 4e-4;
+  scene.told.u_dark_drift_dn_per_s = 0.5;
+  scene.told.source_half_cone = degrees(3.0);
+
+  const auto read = daemon::parse_instrument(instrument_toml(scene, {}), "instrument.toml");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  EXPECT_DOUBLE_EQ(read->model.detector.u_linearity, 0.02);
+  EXPECT_NEAR(read->model.detector.exposure_offset_s.value, 4e-4 / 40.0, 1e-15);
+  EXPECT_DOUBLE_EQ(read->model.detector.u_dark_drift_dn_per_s, 0.5 * 40.0);
+  EXPECT_NEAR(in_degrees(read->cones.source_half), 3.0, 1e-9);
 }
 
 TEST(InstrumentToml, NamesTheSerialLineWhenTheStageIsOnOne) {
