@@ -12,6 +12,8 @@
 namespace gonio::daemon {
 namespace {
 
+using drivers::TapeParty;
+
 /// The ways to the stage over its wire. Over TCP two connections; on a serial line, which there is but once, three
 /// ranks.
 class StageLinks {
@@ -67,28 +69,36 @@ drivers::GenicamCameraConfig camera_of(const DetectorConfig& detector) {
 }  // namespace
 
 struct Devices::Impl {
-  Impl(const Instrument& of, const Clock& clock)
+  Impl(const Instrument& of, TapeDeck& deck)
       : instrument(of),
         stage_links(instrument),
         camera_link(camera_link_of(instrument.detector)),
-        stage(stage_links.motion(), instrument.stage, clock),
-        halt_line(stage_links.halts(), stage_links.beats(), instrument.stage.registers),
-        camera(camera_link, camera_of(instrument.detector), clock) {}
+        stage(deck.modbus(stage_links.motion(), TapeParty::Stage), instrument.stage, deck.clock(TapeParty::Stage)),
+        halt_line(deck.modbus(stage_links.halts(), TapeParty::Halt, 0),
+                  deck.modbus(stage_links.beats(), TapeParty::Halt, 1), instrument.stage.registers),
+        engine_halt_line(deck.halt_line(halt_line)),
+        camera(deck.camera(camera_link, TapeParty::Detector), camera_of(instrument.detector),
+               deck.clock(TapeParty::Detector)) {}
 
   const Instrument instrument;
   StageLinks stage_links;
   drivers::AravisCameraLink camera_link;
   drivers::ModbusStage stage;
   drivers::ModbusHaltLine halt_line;
+  drivers::HaltLine& engine_halt_line;  ///< the same, as the engine is to see it
   drivers::GenicamCamera camera;
 };
 
-Devices::Devices(const Instrument& instrument, const Clock& clock) : impl_(std::make_unique<Impl>(instrument, clock)) {}
+Devices::Devices(const Instrument& instrument, TapeDeck& deck) : impl_(std::make_unique<Impl>(instrument, deck)) {}
 
 Devices::~Devices() = default;
 
 EngineDevices Devices::all() {
-  return {.stage = impl_->stage, .detector = impl_->camera, .halt_line = impl_->halt_line};
+  return {.stage = impl_->stage, .detector = impl_->camera, .halt_line = impl_->engine_halt_line};
+}
+
+drivers::HaltLine& Devices::halt_line() {
+  return impl_->halt_line;
 }
 
 }  // namespace gonio::daemon

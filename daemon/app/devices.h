@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "base/clock.h"
 #include "daemon/app/engine.h"
 #include "daemon/config/instrument.h"
+#include "daemon/tape/tape_deck.h"
 
 namespace gonio::daemon {
 
@@ -12,13 +12,15 @@ namespace gonio::daemon {
 /// Threads: each driver is owned by one (EngineDevices).
 class Devices {
  public:
-  /// `clock` must outlive it; the instrument is copied.
-  Devices(const Instrument& instrument, const Clock& clock);
+  /// Every link and clock passes through `deck`, which must outlive it; the instrument is copied.
+  Devices(const Instrument& instrument, TapeDeck& deck);
   ~Devices();
   Devices(const Devices&) = delete;
   Devices& operator=(const Devices&) = delete;
 
   [[nodiscard]] EngineDevices all();
+  /// The line itself, unrecorded: a replay makes it do its recorded turns.
+  [[nodiscard]] drivers::HaltLine& halt_line();
 
  private:
   struct Impl;

@@ -7,6 +7,7 @@
 #include "daemon/app/calibration_desk.h"
 #include "daemon/app/event_sentence.h"
 #include "daemon/app/log.h"
+#include "daemon/tape/tape_input.h"
 
 namespace gonio::daemon {
 namespace {
@@ -38,7 +39,9 @@ Engine::Engine(Config config, EngineDevices devices, StoreWriter& writer, const 
       writer_(writer),
       clock_(clock),
       on_event_(std::move(on_event)),
-      to_sequencer_(kMailbox),
+      turn_now_(config_.by_hand_from.value_or(Instant{})),
+      sequencer_turns_(turns_of(drivers::TapeParty::Sequencer)),
+      to_sequencer_(kMailbox, config_.by_hand_from.has_value()),
       halt_(devices.halt_line, clock, HaltPathConfig{.heartbeat_timeout = config_.instrument.stage.heartbeat_timeout},
             [this](const HaltPathReport& report) { on_halt(report); }),
       stage_actor_(devices.stage, config_.instrument.stage, [this](const StageAnswer& answer) { on_stage(answer); }),
@@ -48,21 +51,22 @@ Engine::Engine(Config config, EngineDevices devices, StoreWriter& writer, const 
           [this](DetectorActor::Answer answer) { on_detector(std::move(answer)); }),
       store_desk_(*this),
       calibrator_(std::make_unique<Worker>(kMostScansToCompute)) {
-  store_thread_ =
-      std::make_unique<ActorThread<StoreDesk, StoreRequest>>("store", store_desk_, clock_, kMailbox, on_bug);
-  stage_thread_ =
-      std::make_unique<ActorThread<StageActor, StageRequest>>("stage", stage_actor_, clock_, kMailbox, on_bug);
-  detector_thread_ = std::make_unique<ActorThread<DetectorActor, DetectorRequest>>("detector", detector_actor_, clock_,
-                                                                                   kMailbox, on_bug);
+  store_thread_ = std::make_unique<ActorThread<StoreDesk, StoreRequest>>("store", store_desk_, clock_, kMailbox, on_bug,
+                                                                         turns_of(drivers::TapeParty::Store));
+  stage_thread_ = std::make_unique<ActorThread<StageActor, StageRequest>>("stage", stage_actor_, clock_, kMailbox,
+                                                                          on_bug, turns_of(drivers::TapeParty::Stage));
+  detector_thread_ = std::make_unique<ActorThread<DetectorActor, DetectorRequest>>(
+      "detector", detector_actor_, clock_, kMailbox, on_bug, turns_of(drivers::TapeParty::Detector));
   desk_ = std::make_unique<SequencerDesk>(SequencerConfig{.instrument = config_.instrument, .epoch = halt_.epoch()},
-                                          ports(), clock_.now());
+                                          ports(), now());
+  if (config_.by_hand_from) return;
   sequencer_thread_ = std::thread([this] { run_sequencer(); });
   pthread_setname_np(sequencer_thread_.native_handle(), "sequencer");
 }
 
 Engine::~Engine() {
   to_sequencer_.close();
-  sequencer_thread_.join();
+  if (sequencer_thread_.joinable()) sequencer_thread_.join();
   calibrator_.reset();
   detector_thread_->stop();
   stage_thread_->stop();
@@ -98,14 +102,55 @@ SequencerDesk::Ports Engine::ports() {
 
 // The loop of ActorThread, on a mailbox that is there before any actor that answers into it.
 void Engine::run_sequencer() try {
-  std::optional<Instant> wake = desk_->step(clock_.now());
+  std::optional<Instant> wake = step_sequencer();
   while (!to_sequencer_.is_closed()) {
-    const std::optional<SequencerMessage> message = to_sequencer_.take_until(wake, clock_);
-    if (message) desk_->on(*message, clock_.now());
-    if (!to_sequencer_.is_closed()) wake = desk_->step(clock_.now());
+    std::optional<SequencerMessage> message = to_sequencer_.take_until(wake, clock_);
+    if (message) give_sequencer(std::move(*message));
+    if (!to_sequencer_.is_closed()) wake = step_sequencer();
   }
 } catch (const std::exception& bug) {
   on_bug(bug.what());
+}
+
+std::optional<Instant> Engine::step_sequencer() {
+  const Instant at = clock_.now();
+  sequencer_turns_.note(kNoSource, at);
+  return desk_->step(at);
+}
+
+void Engine::give_sequencer(SequencerMessage message) {
+  const Instant at = clock_.now();
+  if (config_.tape != nullptr) {
+    if (std::optional<drivers::TapeInput> input = tape_input_of(message)) config_.tape->put(std::move(*input));
+    sequencer_turns_.note(source_of(message), at);
+  }
+  desk_->on(message, at);
+}
+
+Turns Engine::turns_of(drivers::TapeParty party) const {
+  return {.party = party, .tape = config_.tape, .by_hand = config_.by_hand_from.has_value()};
+}
+
+Result<void> Engine::take_turn(const drivers::TapeTurn& turn) {
+  turn_now_ = turn.now;
+  switch (turn.party) {
+    case drivers::TapeParty::Sequencer:
+      return take_turn_of(*desk_, to_sequencer_, turn);
+    case drivers::TapeParty::Stage:
+      return stage_thread_->take_turn(turn);
+    case drivers::TapeParty::Detector:
+      return detector_thread_->take_turn(turn);
+    case drivers::TapeParty::Store:
+      return store_thread_->take_turn(turn);
+    case drivers::TapeParty::Halt:
+    case drivers::TapeParty::Monitor:
+      break;
+  }
+  return failure({.code = ErrorCode::ReplayDiffers,
+                  .device = std::string(drivers::tape_party_name(turn.party)),
+                  .tried = "take its turn",
+                  .seen = "this instrument has no such device",
+                  .limit = {}});
 }
 
 void Engine::tell(SequencerMessage message) {
@@ -172,7 +217,9 @@ void Engine::publish(const EventRecord& event) {
   is_of_an_item ? log_debug(event_sentence(event)) : log_info(event_sentence(event));
   on_event_(event);
   if (!ends_a_scan(event)) return;
-  if (!calibrator_->post([this, scan = event.scan] { compute_brdf_of(scan); })) {
+  if (config_.by_hand_from) {
+    compute_brdf_of(event.scan);  // the tape says when the store takes it
+  } else if (!calibrator_->post([this, scan = event.scan] { compute_brdf_of(scan); })) {
     log_warning(fmt::format("scan {}: its BRDF is computed when it is asked for", event.scan));
   }
 }
@@ -186,7 +233,7 @@ void Engine::compute_brdf_of(ScanId scan) {
     return;
   }
   log_info(fmt::format("scan {}: BRDF of {} points by {}", scan, brdf->rows.size(), brdf->code_version));
-  StoreTransaction transaction{.at = clock_.now(), .writes = {std::move(*brdf)}};
+  StoreTransaction transaction{.at = now(), .writes = {std::move(*brdf)}};
   transaction.events.push_back({.kind = "brdf-computed", .scan = scan, .who = "goniod", .json = "{}"});
   if (!store_thread_->post(Commit{SequencerDesk::kOwnTicket, std::move(transaction)})) {
     log_warning(fmt::format("scan {}: its BRDF was not stored; it is computed when it is asked for", scan));

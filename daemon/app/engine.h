@@ -17,6 +17,7 @@
 #include "daemon/engine/detector_actor.h"
 #include "daemon/engine/halt_path.h"
 #include "daemon/engine/stage_actor.h"
+#include "daemon/engine/turns.h"
 #include "daemon/http/worker.h"
 #include "daemon/store/store_actor.h"
 
@@ -36,6 +37,10 @@ class Engine {
   struct Config {
     Instrument instrument;
     std::string store_file;  ///< for readers beside `writer`
+    /// Every turn of every actor, and what clients ask, goes here when it is set; it must outlive the engine.
+    drivers::TapeSink* tape = nullptr;
+    /// No actor has a thread: from this instant on `take_turn` makes them act as a tape has it, on the caller's thread.
+    std::optional<Instant> by_hand_from = std::nullopt;
   };
   /// A committed event; called on the store's thread, in order.
   using OnEvent = std::function<void(const EventRecord&)>;
@@ -52,6 +57,11 @@ class Engine {
   void stop(const std::string& who, std::function<void(Result<drivers::Epoch>)> done);
   /// To the sequencer. `done` comes once.
   void command(const std::string& who, Verb verb, std::function<void(Result<CommandDone>)> done);
+
+  /// Only with Config::by_hand_from: one recorded turn again. Errors: ReplayDiffers.
+  [[nodiscard]] Result<void> take_turn(const drivers::TapeTurn& turn);
+  /// Only with Config::by_hand_from: what reached the sequencer from a client or the halt path; it waits for its turn.
+  void take_in(SequencerMessage message) { tell(std::move(message)); }
 
   [[nodiscard]] SequencerStatus status() const { return desk_->status(); }
   [[nodiscard]] const Latest<drivers::StageState>& stage() const { return stage_seen_; }
@@ -81,6 +91,10 @@ class Engine {
   void compute_brdf_of(ScanId scan);
   void tell(SequencerMessage message);
   void run_sequencer();
+  std::optional<Instant> step_sequencer();
+  void give_sequencer(SequencerMessage message);
+  [[nodiscard]] Instant now() const { return config_.by_hand_from ? turn_now_ : clock_.now(); }
+  [[nodiscard]] Turns turns_of(drivers::TapeParty party) const;
   [[nodiscard]] SequencerDesk::Ports ports();
 
   const Config config_;
@@ -93,7 +107,9 @@ class Engine {
   PendingReplies<Result<drivers::Epoch>> stops_;
   Latest<drivers::StageState> stage_seen_;
   Latest<bool> detector_seen_;
-  Mailbox<SequencerMessage> to_sequencer_;
+  Instant turn_now_{};  ///< of the turn in hand, by hand
+  const Turns sequencer_turns_;
+  TurnQueue<SequencerMessage> to_sequencer_;
 
   // In the order of starting; each is used by those below it only, or through the mailbox above.
   HaltPath halt_;

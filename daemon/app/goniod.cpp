@@ -15,11 +15,14 @@
 #include "daemon/app/engine.h"
 #include "daemon/app/log.h"
 #include "daemon/app/options.h"
+#include "daemon/app/recording.h"
+#include "daemon/app/replay.h"
 #include "daemon/app/scan_reports.h"
 #include "daemon/app/simulate.h"
 #include "daemon/engine/file_limit.h"
 #include "daemon/http/server.h"
 #include "daemon/store/store_writer.h"
+#include "daemon/tape/tape_deck.h"
 
 namespace gonio::daemon {
 namespace {
@@ -96,16 +99,23 @@ Result<void> serve(const Options& options, const sigset_t& signals) {
   if (!instrument) return failure(instrument.error());
   Result<Listeners> listeners = Listeners::bind(options.address, options.port, options.socket_file);
   if (!listeners) return failure(listeners.error());
+  Result<std::unique_ptr<drivers::TapeWriter>> tape(nullptr);
+  if (!options.record_file.empty()) {
+    tape = start_recording(options.record_file, options.store_file, *instrument, boot_id(), clock);
+    if (!tape) return failure(tape.error());
+  }
+  TapeDeck deck = *tape ? TapeDeck(clock, **tape) : TapeDeck(clock);
   const Result<std::unique_ptr<StoreWriter>> writer =
-      StoreWriter::open({.path = options.store_file, .boot_id = boot_id(), .version = GONIO_VERSION}, clock);
+      StoreWriter::open({.path = options.store_file, .boot_id = boot_id(), .version = GONIO_VERSION},
+                        deck.clock(drivers::TapeParty::Store));
   if (!writer) return failure(writer.error());
   const ReferenceShelf shelf(options.references.empty() ? instrument->reference_directory : options.references);
   log_references(shelf);
 
   Publisher publisher;
-  Devices devices(*instrument, clock);
-  Engine engine({.instrument = *instrument, .store_file = options.store_file}, devices.all(), **writer, clock,
-                [&publisher](const EventRecord& event) { publisher(event); });
+  Devices devices(*instrument, deck);
+  Engine engine({.instrument = *instrument, .store_file = options.store_file, .tape = deck.sink()}, devices.all(),
+                **writer, clock, [&publisher](const EventRecord& event) { publisher(event); });
   DaemonService service({.engine = engine,
                          .instrument = *instrument,
                          .shelf = shelf,
@@ -126,6 +136,13 @@ Result<void> serve(const Options& options, const sigset_t& signals) {
   return {};
 }
 
+ReplayWanted replay_of(const Options& options) {
+  return {.tape_file = options.replay_file,
+          .store_file = options.store_file,
+          .instrument_file = options.has_instrument ? options.instrument_file : "",
+          .against = options.against};
+}
+
 int run(const std::vector<std::string>& arguments) {
   const auto options = read_options(arguments);
   if (!options) {
@@ -137,7 +154,8 @@ int run(const std::vector<std::string>& arguments) {
   if (options->simulate) {
     error = become(simulation_command(arguments, own_path()));
   } else {
-    const Result<void> served = serve(*options, block_end_signals());
+    const Result<void> served =
+        options->replay_file.empty() ? serve(*options, block_end_signals()) : replay(replay_of(*options), std::cout);
     if (served) return 0;
     error = served.error();
   }

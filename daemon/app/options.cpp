@@ -40,6 +40,11 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--log-level", options.log_level)
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
       ->capture_default_str();
+  app.add_option("--record", options.record_file, "a tape of every exchange with the devices; must not be there");
+  CLI::Option* replay = app.add_option("--replay", options.replay_file,
+                                       "run on this tape instead of devices, into a new --store, and end")
+                            ->excludes("--record");
+  app.add_option("--against", options.against, "compare the replay's store with this one")->needs(replay);
   app.add_option("--simulate", options.simulate, "run on a simulated instrument: goniosim with this scene")
       ->expected(0, 1);
 }
@@ -55,6 +60,7 @@ tl::expected<Options, OptionsAdvice> read_options(const std::vector<std::string>
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
   try {
     app.parse(reversed);
+    options.has_instrument = app.count("--instrument") > 0;
   } catch (const CLI::ParseError& e) {
     std::ostringstream out;
     std::ostringstream err;

@@ -19,6 +19,10 @@ struct Options {
   std::string references;   ///< empty: what instrument.toml says
   std::string ready_file;   ///< empty: none
   std::string log_level = "info";
+  std::string record_file;              ///< a tape to be written; empty: none
+  std::string replay_file;              ///< a tape to be replayed in place of serving; empty: none
+  std::string against;                  ///< a store to compare the replay's with
+  bool has_instrument = false;          ///< `instrument_file` was named
   std::optional<std::string> simulate;  ///< a scene; empty text: the usual one
 };
 

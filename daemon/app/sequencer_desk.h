@@ -47,4 +47,12 @@ class SequencerDesk {
   SequencerStatus status_;
 };
 
+/// The store is asked by the sequencer and, with the ticket of nobody, by others.
+[[nodiscard]] inline std::uint8_t source_of(const StoreRequest& request) {
+  constexpr std::uint8_t kOfOthers = 16;
+  const auto* commit = std::get_if<Commit>(&request);
+  const bool is_of_others = commit != nullptr && commit->ticket == SequencerDesk::kOwnTicket;
+  return static_cast<std::uint8_t>(request.index() + 1 + (is_of_others ? kOfOthers : 0));
+}
+
 }  // namespace gonio::daemon

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "daemon/engine/mailbox.h"
+#include "daemon/engine/turns.h"
 
 namespace gonio::daemon {
 
@@ -23,8 +23,10 @@ class ActorThread {
   using OnBug = std::function<void(const std::string& what)>;
 
   /// `actor` and `clock` must outlive the thread. `name` is cut to what the system shows, 15 characters.
-  ActorThread(std::string name, Actor& actor, const Clock& clock, std::size_t capacity, OnBug on_bug)
-      : actor_(actor), clock_(clock), mailbox_(capacity), on_bug_(std::move(on_bug)), thread_([this] { run(); }) {
+  ActorThread(std::string name, Actor& actor, const Clock& clock, std::size_t capacity, OnBug on_bug, Turns turns = {})
+      : actor_(actor), clock_(clock), turns_(turns), queue_(capacity, turns.by_hand), on_bug_(std::move(on_bug)) {
+    if (turns_.by_hand) return;
+    thread_ = std::thread([this] { run(); });
     pthread_setname_np(thread_.native_handle(), name.substr(0, 15).c_str());
   }
   ~ActorThread() { stop(); }
@@ -32,11 +34,14 @@ class ActorThread {
   ActorThread& operator=(const ActorThread&) = delete;
 
   /// False when the mailbox is full or closed. Threads: any.
-  [[nodiscard]] bool post(Message message) { return mailbox_.post(std::move(message)); }
+  [[nodiscard]] bool post(Message message) { return queue_.post(std::move(message)); }
+
+  /// Only with Turns::by_hand. Errors: ReplayDiffers.
+  [[nodiscard]] Result<void> take_turn(const drivers::TapeTurn& turn) { return take_turn_of(actor_, queue_, turn); }
 
   /// Ends after the message or step in hand; what waits in the mailbox is dropped. Not from the actor's own thread.
   void stop() {
-    mailbox_.close();
+    queue_.close();
     if (thread_.joinable()) thread_.join();
   }
 
@@ -50,17 +55,30 @@ class ActorThread {
   }
 
   void loop() {
-    std::optional<Instant> wake = actor_.step(clock_.now());
-    while (!mailbox_.is_closed()) {
-      std::optional<Message> message = mailbox_.take_until(wake, clock_);
-      if (message) actor_.on(std::move(*message), clock_.now());
-      if (!mailbox_.is_closed()) wake = actor_.step(clock_.now());
+    std::optional<Instant> wake = step();
+    while (!queue_.is_closed()) {
+      std::optional<Message> message = queue_.take_until(wake, clock_);
+      if (message) give(std::move(*message));
+      if (!queue_.is_closed()) wake = step();
     }
+  }
+
+  void give(Message message) {
+    const Instant now = clock_.now();
+    if (turns_.tape != nullptr) turns_.note(source_of(message), now);
+    actor_.on(std::move(message), now);
+  }
+
+  std::optional<Instant> step() {
+    const Instant now = clock_.now();
+    turns_.note(kNoSource, now);
+    return actor_.step(now);
   }
 
   Actor& actor_;
   const Clock& clock_;
-  Mailbox<Message> mailbox_;
+  const Turns turns_;
+  TurnQueue<Message> queue_;
   OnBug on_bug_;
   std::thread thread_;
 };

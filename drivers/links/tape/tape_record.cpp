@@ -10,8 +10,8 @@ std::string_view tape_party_name(TapeParty party) {
       return "halt line";
     case TapeParty::Detector:
       return "detector";
-    case TapeParty::Radiometer:
-      return "radiometer";
+    case TapeParty::Monitor:
+      return "monitor";
     case TapeParty::Sequencer:
       return "sequencer";
     case TapeParty::Store:

@@ -13,7 +13,7 @@
 namespace gonio::drivers {
 
 /// Whose turn, exchange or clock reading a record is: one thread of the daemon each.
-enum class TapeParty : std::uint8_t { Stage = 1, Halt = 2, Detector = 3, Radiometer = 4, Sequencer = 5, Store = 6 };
+enum class TapeParty : std::uint8_t { Stage = 1, Halt = 2, Detector = 3, Monitor = 4, Sequencer = 5, Store = 6 };
 inline constexpr int kTapePartyCount = 6;
 /// "stage", "halt line", "detector" ...
 [[nodiscard]] std::string_view tape_party_name(TapeParty party);

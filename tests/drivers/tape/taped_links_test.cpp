@@ -165,7 +165,7 @@ TEST_F(TapedLinks, PassAllOfAUsbDeviceThroughAndReplayItAsItWas) {
   ON_CALL(usb, interrupt_in).WillByDefault(Return(failure(kSilence)));
   ON_CALL(usb, control_in).WillByDefault(Return(Bytes{3}));
   EXPECT_CALL(usb, close());
-  TapedUsbtmcLink taped(usb, {tape, clock, TapeParty::Radiometer});
+  TapedUsbtmcLink taped(usb, {tape, clock, TapeParty::Monitor});
 
   const auto use_it = [](UsbtmcLink& link) {
     const Bytes bytes{7, 8, 9};
@@ -181,7 +181,7 @@ TEST_F(TapedLinks, PassAllOfAUsbDeviceThroughAndReplayItAsItWas) {
   };
   use_it(taped);
   TapePlayer& player = play();
-  ReplayUsbtmcLink replayed(player, TapeParty::Radiometer);
+  ReplayUsbtmcLink replayed(player, TapeParty::Monitor);
   use_it(replayed);
 
   EXPECT_FALSE(player.difference().has_value());
