@@ -61,18 +61,20 @@ struct Chord {
   int last = -1;
 };
 
-Chord chord(const DetectorSpec& spec, int y) {
-  const Aperture a = aperture_of(spec);
-  const double half_chord2 = a.radius_px * a.radius_px - (y - a.centre_y_px) * (y - a.centre_y_px);
-  if (half_chord2 < 0.0) return {};
-  return {.first = static_cast<int>(std::max(0.0, std::ceil(a.centre_x_px - std::sqrt(half_chord2)))),
-          .last = static_cast<int>(std::min(spec.width_px - 1.0, std::floor(a.centre_x_px + std::sqrt(half_chord2))))};
+Chord chord(const Aperture& a, int width_px, int y) {
+  const double dy = y - a.centre_y_px;
+  const double half2 = a.radius_px * a.radius_px - dy * dy;
+  if (half2 < 0.0) return {};
+  const double half = std::sqrt(half2);
+  return {.first = static_cast<int>(std::max(0.0, std::ceil(a.centre_x_px - half))),
+          .last = static_cast<int>(std::min(width_px - 1.0, std::floor(a.centre_x_px + half)))};
 }
 
 std::uint32_t pixels_inside(const DetectorSpec& spec) {
+  const Aperture a = aperture_of(spec);
   int n = 0;
   for (int y = 0; y < spec.height_px; ++y) {
-    const Chord row = chord(spec, y);
+    const Chord row = chord(a, spec.width_px, y);
     n += std::max(0, row.last - row.first + 1);
   }
   return static_cast<std::uint32_t>(n);
@@ -80,9 +82,10 @@ std::uint32_t pixels_inside(const DetectorSpec& spec) {
 
 std::vector<double> drawn_pixels(const DetectorSpec& spec, const PixelModel& pixel, const SpecklePattern& speckle,
                                  Chance& chance) {
+  const Aperture a = aperture_of(spec);
   std::vector<double> values;
   for (int y = 0; y < spec.height_px; ++y) {
-    const Chord row = chord(spec, y);
+    const Chord row = chord(a, spec.width_px, y);
     for (int x = row.first; x <= row.last; ++x) values.push_back(pixel.draw(chance, speckle(x, y)));
   }
   return values;

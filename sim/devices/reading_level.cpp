@@ -37,7 +37,7 @@ ReadingLevel::ReadingLevel(Scene scene)
 
 ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
   assert(request.exposure > Duration::zero());
-  StagePose pose{.last_move = request.move, .source_open = true, .detector_open = !request.is_dark};
+  StagePose pose{.last_move = request.move, .source_open = !request.is_ambient, .detector_open = !request.is_dark};
   pose.positions[index_of(Axis::ThetaI)] = in_degrees(request.encoders.theta_i);
   pose.positions[index_of(Axis::ThetaR)] = in_degrees(request.encoders.theta_r);
   pose.positions[index_of(Axis::PhiR)] = in_degrees(request.encoders.phi_r);

@@ -20,6 +20,7 @@ enum class Approach : std::uint8_t { FromBelow, FromAbove };
 struct ReadingRequest {
   Station target = Station::Sample;
   bool is_dark = false;               ///< detector shutter closed
+  bool is_ambient = false;            ///< source shutter closed
   Geometry encoders;                  ///< what the encoders say; the truth adds its errors
   Wavelength wavelength;              ///< of a filter of the scene: the nearest is taken
   Duration exposure{};                ///< wall time

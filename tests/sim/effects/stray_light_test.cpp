@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/devices/reading_level.h"
 #include "sim/optics/reflected_share.h"
 #include "tests/sim/effects/effects_bench.h"
 
@@ -90,6 +91,24 @@ TEST(StrayLight, OfTheRoomIsNotLampLight) {
   EXPECT_NEAR(once.dark_electrons, 500.0 + kWhite * 0.01 * 0.1, 1e-6);
   EXPECT_NEAR(twice.light_electrons, 2.0 * once.light_electrons, 1e-6);
   EXPECT_NEAR(twice.dark_electrons, 500.0 + 2.0 * kWhite * 0.01 * 0.1, 1e-6);
+}
+
+TEST(StrayLight, OfTheRoomIsReadAloneWithTheSourceShutterClosed) {
+  const Scene scene = straying({.ambient_electrons_per_s = 50000.0, .source_share = 0.01, .internal_share = 0.01});
+  const ReadingLevel level(scene);
+  const auto mean = [&](bool is_dark, bool is_ambient) {
+    return level
+        .read({.is_dark = is_dark,
+               .is_ambient = is_ambient,
+               .encoders = kPlace,
+               .wavelength = nanometres(568.0),
+               .exposure = seconds(0.1)})
+        .region.mean;
+  };
+
+  // 5000 electrons in 448 pixels of 4 electrons a DN: the mean's noise is 0.84 DN.
+  EXPECT_NEAR(mean(false, true), 64.0 + 1250.0, 5.0 * 0.84);
+  EXPECT_NEAR(mean(true, false), 64.0, 1e-9);
 }
 
 TEST(StrayLight, OfTheRoomCountsForTheTimeThatTheDetectorsShutterIsOpen) {
