@@ -9,7 +9,7 @@
 namespace gonio::sim {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr int kSamples = 512;
 
 struct Point {
@@ -57,7 +57,7 @@ bool is_same(const SurfaceEllipse& a, const SurfaceEllipse& b) {
   constexpr double kNearly = 1e-9;
   const double apart = std::hypot(a.centre_x_mm - b.centre_x_mm, a.centre_y_mm - b.centre_y_mm);
   if (apart > kNearly * a.short_mm) return false;
-  for (const double t : {0.0, 0.125 * kTurn, 0.25 * kTurn}) {
+  for (const double t : {0.0, 0.125 * kWholeTurn, 0.25 * kWholeTurn}) {
     const Point p = point_at(a, t);
     if (std::abs(depth(b, p)) > kNearly) return false;
   }
@@ -67,7 +67,7 @@ bool is_same(const SurfaceEllipse& a, const SurfaceEllipse& b) {
 // The parts of one rim inside all the others. Of equal ellipses the first one has the rim.
 double rim_integral(std::span<const SurfaceEllipse> ellipses, std::size_t own) {
   const SurfaceEllipse& e = ellipses[own];
-  std::vector<double> cuts{0.0, kTurn};
+  std::vector<double> cuts{0.0, kWholeTurn};
   for (std::size_t k = 0; k < ellipses.size(); ++k) {
     if (k == own) continue;
     if (is_same(ellipses[k], e)) {
@@ -76,8 +76,8 @@ double rim_integral(std::span<const SurfaceEllipse> ellipses, std::size_t own) {
     }
     double before = depth(ellipses[k], point_at(e, 0.0));
     for (int j = 1; j <= kSamples; ++j) {
-      const double from = kTurn * (j - 1) / kSamples;
-      const double to = kTurn * j / kSamples;
+      const double from = kWholeTurn * (j - 1) / kSamples;
+      const double to = kWholeTurn * j / kSamples;
       const double now = depth(ellipses[k], point_at(e, to));
       if ((before < 0.0) != (now < 0.0))
         cuts.push_back(before < 0.0 ? crossing(e, ellipses[k], from, to) : crossing(e, ellipses[k], to, from));

@@ -9,7 +9,7 @@ namespace {
 using stage::Axis;
 
 constexpr std::array kAngles{Axis::ThetaI, Axis::ThetaR, Axis::PhiR, Axis::PhiI};
-constexpr NumberRange kShare{.least = 0.0, .most = 1.0};
+constexpr NumberRange kFraction{.least = 0.0, .most = 1.0};
 constexpr NumberRange kSize{.least = 0.01, .most = 1000.0, .unit = "mm"};
 constexpr NumberRange kSeconds{.least = 1.0, .most = 1e7, .unit = "s"};
 
@@ -67,9 +67,9 @@ PeriodicError read_periodic(TomlReader t) {
 
 PolarisationSpec read_polarisation(TomlReader t) {
   PolarisationSpec polarisation;
-  polarisation.source_degree = t.number_or("source_degree", 0.0, kShare);
+  polarisation.source_degree = t.number_or("source_degree", 0.0, kFraction);
   polarisation.source_plane = angle_or(t, "source_plane_deg", {}, 180.0);
-  polarisation.detector_diattenuation = t.number_or("detector_diattenuation", 0.0, kShare);
+  polarisation.detector_diattenuation = t.number_or("detector_diattenuation", 0.0, kFraction);
   polarisation.detector_plane = angle_or(t, "detector_plane_deg", {}, 180.0);
   return polarisation;
 }
@@ -77,8 +77,8 @@ PolarisationSpec read_polarisation(TomlReader t) {
 StraySpec read_stray(TomlReader t) {
   StraySpec stray;
   stray.ambient_electrons_per_s = t.number_or("ambient_electrons_per_s", 0.0, {.least = 0.0, .most = 1e9});
-  stray.source_share = t.number_or("source_share", 0.0, kShare);
-  stray.internal_share = t.number_or("internal_share", 0.0, kShare);
+  stray.source_share = t.number_or("source_share", 0.0, kFraction);
+  stray.internal_share = t.number_or("internal_share", 0.0, kFraction);
   return stray;
 }
 
@@ -97,7 +97,7 @@ ResponseSpec read_response(TomlReader t) {
 DarkDriftSpec read_dark_drift(TomlReader t) {
   DarkDriftSpec drift;
   drift.per_hour = t.number_or("per_hour", 0.0, {.least = -1.0, .most = 10.0});
-  drift.wander = t.number_or("wander", 0.0, kShare);
+  drift.wander = t.number_or("wander", 0.0, kFraction);
   drift.offset_dn_per_hour = t.number_or("offset_dn_per_hour", 0.0, {.least = -100.0, .most = 100.0, .unit = "DN"});
   drift.offset_wander_dn = t.number_or("offset_wander_dn", 0.0, {.least = 0.0, .most = 50.0, .unit = "DN"});
   drift.correlation_s = t.number_or("correlation_s", drift.correlation_s, kSeconds);
@@ -109,7 +109,7 @@ DarkDriftSpec read_dark_drift(TomlReader t) {
 
 SpeckleSpec read_speckle(TomlReader t) {
   SpeckleSpec speckle;
-  speckle.contrast = t.number("contrast", kShare);
+  speckle.contrast = t.number("contrast", kFraction);
   speckle.grain_px = static_cast<int>(t.integer_or("grain_px", speckle.grain_px, 1, 64));
   speckle.cell = degrees(t.number_or("cell_deg", in_degrees(speckle.cell), {.least = 0.001, .most = 10.0}));
   return speckle;
@@ -150,7 +150,7 @@ void read_effects(TomlReader table, Scene& scene) {
 }
 
 void read_told(TomlReader t, ToldSpec& told) {
-  const auto share = [&](std::string_view key) { return t.optional_number(key, kShare); };
+  const auto share = [&](std::string_view key) { return t.optional_number(key, kFraction); };
   const auto angle = [&](std::string_view key) -> std::optional<Angle> {
     const auto value = t.optional_number(key, {.least = 0.0, .most = 5.0, .unit = "deg"});
     return value ? std::optional<Angle>(degrees(*value)) : std::nullopt;
