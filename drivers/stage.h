@@ -26,6 +26,7 @@ struct AxisState {
   bool homed = false;
   bool at_limit = false;
   std::uint16_t fault = 0;
+  std::uint16_t alarm = 0;  ///< the drive's own code of its fault, where it has one
 };
 
 /// What the stage latched over one exposure of the camera (exposure-active line).

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "base/clock.h"
 #include "drivers/kinematics/kinematics_config.h"
 #include "protocol/stage/axis.h"
+#include "protocol/stage/drive_stage_map.h"
 #include "protocol/stage/register_map.h"
 
 namespace gonio::drivers {
@@ -20,7 +23,10 @@ struct AxisConfig {
 
 /// The stage as instrument.toml has it.
 struct StageConfig {
-  stage::RegisterMap registers;
+  stage::RegisterMap registers;                ///< of a stage of drives: the scales of the axes only
+  std::optional<stage::DriveStageMap> drives;  ///< when set, the stage is one of drives
+  /// Whether the stage latches encoders and monitor over an exposure by itself; without, they are looked at around it.
+  bool has_gate = true;
   stage::PerAxis<AxisConfig> axes{};
   KinematicsConfig kinematics;   ///< how axes make directions
   Duration reply_timeout{};      ///< of one exchange on the wire

@@ -12,6 +12,7 @@
 
 #include "base/toml_reader.h"
 #include "daemon/config/configuration_hash.h"
+#include "daemon/config/drives_section.h"
 #include "daemon/config/kinematics_section.h"
 
 namespace gonio::daemon {
@@ -72,8 +73,7 @@ drivers::StageConfig read_stage_config(TomlReader& table) {
     stage.axes[stage::index_of(axis)] = read_axis(one, stage::axis_unit(axis));
   }
   read_kinematics(table, stage);
-  TomlReader registers = table.table("registers");
-  stage.registers = stage::read_register_map(registers);
+  read_stage_kind(table, stage);
   return stage;
 }
 

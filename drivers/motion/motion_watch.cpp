@@ -43,6 +43,9 @@ std::string fault_text(const StageState& seen) {
     if (fault == 0) continue;
     text += fmt::format("{}axis {} fault {} ({})", text.empty() ? "" : ", ", stage::axis_name(axis), fault,
                         fault_name(fault));
+    if (const std::uint16_t alarm = seen.axes[stage::index_of(axis)].alarm; alarm != 0) {
+      text += fmt::format(", alarm {:#06x}", alarm);
+    }
   }
   return text;
 }

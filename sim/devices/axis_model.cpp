@@ -41,24 +41,43 @@ bool AxisModel::is_within_limits(double position) const {
   return position >= spec_.low - half_count && position <= spec_.high + half_count;
 }
 
-void AxisModel::start(double target, double speed_factor, std::uint64_t move, Instant now) {
+void AxisModel::start(double target, const AxisDynamics& dynamics, std::uint64_t move, Instant now) {
   last_move_ = move;
   const double here = position(now);
   if (is_blocked_) {
     if (here != target) fault_due_ = now + following_error_;
     return;
   }
-  follow(Trajectory::move(here, target, {dynamics_.speed * speed_factor, dynamics_.acceleration}, now), now);
+  follow(Trajectory::move(here, target, dynamics, now), now);
 }
 
 void AxisModel::move_to(double target, std::uint64_t move, Instant now) {
-  start(target, 1.0, move, now);
+  start(target, dynamics_, move, now);
+}
+
+void AxisModel::move_to(double target, const AxisDynamics& wanted, std::uint64_t move, Instant now) {
+  start(target,
+        {.speed = std::min(wanted.speed, dynamics_.speed),
+         .acceleration = std::min(wanted.acceleration, dynamics_.acceleration)},
+        move, now);
+}
+
+void AxisModel::power_cycle(Instant now) {
+  const double here = position(now);
+  follow(Trajectory(here), now);
+  origin_ = here;
+  is_homed_ = false;
+  homing_end_.reset();
+  fault_due_.reset();
+  fault_ = 0;
+  ++boots_;
 }
 
 void AxisModel::home(std::uint64_t move, Instant now) {
   constexpr double kCarefully = 0.5;
   is_homed_ = false;
-  start(std::clamp(0.0, spec_.low, spec_.high), kCarefully, move, now);
+  start(std::clamp(0.0, spec_.low, spec_.high),
+        {.speed = dynamics_.speed * kCarefully, .acceleration = dynamics_.acceleration}, move, now);
   if (!fault_due_) homing_end_ = path_.end();
 }
 

@@ -19,12 +19,18 @@ class AxisModel {
             double lag = 0.0);
 
   void move_to(double target, std::uint64_t move, Instant now);
+  /// The same, no faster than `wanted` (wall time).
+  void move_to(double target, const AxisDynamics& wanted, std::uint64_t move, Instant now);
   /// Looks for the zero, at half speed; homed once it is there.
   void home(std::uint64_t move, Instant now);
   void brake(Instant now);
   /// Holds the axis where it stands: the drive notices after the following-error time, if the axis should be moving.
   void block(Instant now);
   void free() { is_blocked_ = false; }
+  /// Its drive loses power and gets it back: stands, and counts from here until homing.
+  void power_cycle(Instant now);
+  /// How often that has happened.
+  [[nodiscard]] std::uint32_t boots() const { return boots_; }
   void clear_fault();
 
   /// The next instant at which something happens by itself: homing ends, a following error is noticed.
@@ -49,7 +55,7 @@ class AxisModel {
   [[nodiscard]] const AxisSpec& spec() const { return spec_; }
 
  private:
-  void start(double target, double speed_factor, std::uint64_t move, Instant now);
+  void start(double target, const AxisDynamics& dynamics, std::uint64_t move, Instant now);
   void follow(Trajectory path, Instant now);
 
   AxisSpec spec_;
@@ -65,6 +71,7 @@ class AxisModel {
   std::optional<Instant> fault_due_;
   std::uint16_t fault_ = 0;
   std::uint64_t last_move_ = 0;
+  std::uint32_t boots_ = 0;
 };
 
 }  // namespace gonio::sim

@@ -8,25 +8,29 @@
 #include "base/clock.h"
 #include "protocol/stage/register_map.h"
 #include "sim/devices/instrument.h"
+#include "sim/devices/register_face.h"
 
 namespace gonio::sim {
 
-/// Why a request is refused, with the numbers of the Modbus Application Protocol V1.1b3, section 7.
-enum class ModbusException : std::uint8_t { IllegalFunction = 1, IllegalAddress = 2, IllegalValue = 3 };
-
 /// The stage as its holding registers: what a Modbus master sees, without the wire. Acts on a write at once, in the
 /// order of protocol/stage/README.md. Threads: one at a time, as the instrument.
-class StageFace {
+class StageFace final : public RegisterFace, public ModbusUnits {
  public:
   /// `instrument` must outlive it; the map is the scene's.
   explicit StageFace(Instrument& instrument);
 
   /// Reads `out.size()` registers from `first` on.
-  [[nodiscard]] std::optional<ModbusException> read(std::uint16_t first, std::span<std::uint16_t> out, Instant now);
+  std::optional<ModbusException> read(std::uint16_t first, std::span<std::uint16_t> out, Instant now) override;
   /// Writes registers: all of them must take commands (or be the token). Nothing is written when refused, except that a
   /// key other than the right one, or a reset below the stage's epoch, is refused with IllegalValue.
-  [[nodiscard]] std::optional<ModbusException> write(std::uint16_t first, std::span<const std::uint16_t> values,
-                                                     Instant now);
+  std::optional<ModbusException> write(std::uint16_t first, std::span<const std::uint16_t> values,
+                                       Instant now) override;
+  /// The only unit: by the map's id, and by the one that means "the device itself" (Modbus Messaging on TCP/IP V1.0b,
+  /// 4.4.2.2).
+  [[nodiscard]] RegisterFace* unit(std::uint8_t id) override {
+    constexpr std::uint8_t kDeviceItself = 0xFF;
+    return id == map_.unit_id || id == kDeviceItself ? this : nullptr;
+  }
 
   [[nodiscard]] const stage::RegisterMap& map() const { return map_; }
 

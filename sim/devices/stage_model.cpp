@@ -57,6 +57,7 @@ std::optional<Instant> StageModel::heartbeat_due() const {
 std::optional<Instant> StageModel::next_event() const {
   std::optional<Instant> next = heartbeat_due();
   for (const AxisModel& axis : axes_) next = earlier(next, axis.next_event());
+  for (const Axis a : stage::kAllAxes) next = earlier(next, drive_watch_due(a));
   return next;
 }
 
@@ -68,6 +69,7 @@ void StageModel::advance_to(Instant now) {
       fault_ = axis.fault();
       has_fault = true;
     }
+    trip_drives(*due);
     const auto beat_due = heartbeat_due();
     const bool trips = beat_due && *beat_due <= *due;
     if (trips) is_tripped_ = true;

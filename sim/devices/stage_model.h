@@ -83,6 +83,22 @@ class StageModel {
   void free_axis(stage::Axis axis) { axes_[stage::index_of(axis)].free(); }
   void set_interlock(bool is_open, Instant now);
 
+  // As separate drives (stage_model_drives.cpp): each axis is told, watched and cleared by itself.
+  /// To a position in counts, no faster than `wanted` (wall time) and than the axis can.
+  void drive_to(stage::Axis axis, std::int64_t counts, const AxisDynamics& wanted, Instant now);
+  void home_drive(stage::Axis axis, Instant now);
+  void brake_drive(stage::Axis axis, Instant now);
+  /// A drive that hears nothing for `timeout` brakes its axis, and is tripped; zero ends the watch.
+  void watch_drive(stage::Axis axis, Duration timeout, Instant now);
+  void feed_drive(stage::Axis axis, Instant now);
+  [[nodiscard]] bool is_drive_tripped(stage::Axis axis) const {
+    return drive_watches_[stage::index_of(axis)].is_tripped;
+  }
+  /// Clears trip and fault; false: the fault's cause is still there.
+  [[nodiscard]] bool clear_drive(stage::Axis axis, Instant now);
+  /// One drive loses its power and gets it back: its home and its watch are gone, the axis stands where it was.
+  void power_cycle_axis(stage::Axis axis, Instant now);
+
   [[nodiscard]] const AxisModel& axis(stage::Axis a) const { return axes_[stage::index_of(a)]; }
   [[nodiscard]] bool is_moving(Instant t) const;
   [[nodiscard]] bool is_homed() const;
@@ -104,9 +120,17 @@ class StageModel {
   [[nodiscard]] std::uint32_t shutter_commands() const { return shutter_commands_; }
   [[nodiscard]] bool is_halted() const { return is_halted_; }
   [[nodiscard]] bool is_tripped() const { return is_tripped_; }
+  [[nodiscard]] bool is_interlock_open() const { return is_interlock_open_; }
   [[nodiscard]] StageMemory memory(Instant now) const;
 
  private:
+  struct DriveWatch {
+    Duration timeout{};
+    Instant last_word{};
+    bool is_tripped = false;
+  };
+  [[nodiscard]] std::optional<Instant> drive_watch_due(stage::Axis axis) const;
+  void trip_drives(Instant now);
   [[nodiscard]] stage::Refusal judge(const MotionCommand& command, Instant now) const;
   [[nodiscard]] std::optional<Instant> heartbeat_due() const;
   [[nodiscard]] stage::PerAxis<std::int32_t> latched(Instant now) const;
@@ -126,6 +150,7 @@ class StageModel {
   std::uint16_t heartbeat_seen_ = 0;
   std::uint16_t heartbeat_timeout_ms_ = 0;
   Instant last_beat_;
+  stage::PerAxis<DriveWatch> drive_watches_{};
   ShutterModel source_shutter_;
   ShutterModel detector_shutter_;
   std::uint32_t motion_commands_ = 0;

@@ -23,6 +23,7 @@
 #include "sim/goniosim/find_scene.h"
 #include "sim/goniosim/simulator.h"
 #include "sim/goniosim/truth_table.h"
+#include "sim/scene/drive_stage.h"
 #include "sim/scene/read_scene.h"
 #include "sim/wires/usb_bus.h"
 
@@ -37,6 +38,7 @@ struct Options {
   std::optional<double> time_scale;
   std::string state;
   WireWishes wishes;
+  bool wants_drives = false;
   bool wants_truth = false;
   std::string points;
   std::vector<std::string> daemon;  ///< what stands after --
@@ -57,6 +59,10 @@ void describe_options(CLI::App& app, Options& options) {
   app.add_option("--stage-wire", options.wishes.wants_rtu,
                  "tcp, or rtu: a serial line behind STATE/stage.tty, 8 data bits, no parity, 2 stop bits")
       ->transform(CLI::CheckedTransformer(wires));
+  const std::map<std::string, bool> stages{{"goniod", false}, {"drives", true}};
+  app.add_option("--stage", options.wants_drives,
+                 "goniod: one controller; or drives: a servo drive an axis (units 1 to 6) and a coupler (unit 20)")
+      ->transform(CLI::CheckedTransformer(stages));
   app.add_option("--baud", options.wishes.stage_baud, "speed of that line, which the replies keep")
       ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600}));
   app.add_option("--modbus-port", options.wishes.stage_port, "TCP port of the stage on 127.0.0.1");
@@ -108,6 +114,7 @@ Result<Scene> scene_of(const Options& options) {
   if (!scene) return scene;
   if (options.seed) scene->seed = *options.seed;
   if (options.time_scale) scene->time_scale = *options.time_scale;
+  if (options.wants_drives) scene->stage.drives = drive_stage_of(scene->stage);
   return scene;
 }
 

@@ -49,10 +49,10 @@ std::string stage_address_lines(const WireAddresses& addresses) {
 std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
   constexpr double kPatience = 2.0;
   std::string text = fmt::format(
-      "\n[stage]\n{}reply_timeout_s = 1.0\nhoming_time_s = {:.3f}\n"
+      "\n[stage]\n{}{}reply_timeout_s = 1.0\nhoming_time_s = {:.3f}\n"
       "shutter_time_s = {:.3f}\nheartbeat_timeout_s = {}\ndeadline_factor = 1.5\ndeadline_margin_s = {}\n",
-      stage_address_lines(addresses), homing_time_s(scene), 2.0 * wall_s(scene, scene.stage.shutter_s) + kPatience,
-      scene.stage.heartbeat_timeout_wall_s, kPatience);
+      scene.stage.drives ? "kind = \"drives\"\n" : "", stage_address_lines(addresses), homing_time_s(scene),
+      2.0 * wall_s(scene, scene.stage.shutter_s) + kPatience, scene.stage.heartbeat_timeout_wall_s, kPatience);
   for (const Axis axis : stage::kAllAxes) text += axis_section(scene, axis);
   text += fmt::format("\n[stage.carriage]\nsample_mm = {}\nreference_mm = {}\ntrap_mm = {}\n", scene.stage.sample_mm,
                       scene.stage.reference_mm, scene.stage.trap_mm);
@@ -65,6 +65,7 @@ std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
   text +=
       "\n[stage.shadow]\ndetector_head_radius_mm = 20.0\nsource_head_radius_mm = 20.0\ndetector_arm_mm = 500.0\n"
       "source_arm_mm = 600.0\n\n";
+  if (scene.stage.drives) return text + stage::to_toml(*scene.stage.drives, "stage.drives");
   return text + stage::to_toml(scene.stage.registers, "stage.registers");
 }
 

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/units.h"
 #include "protocol/stage/axis.h"
+#include "protocol/stage/drive_stage_map.h"
 #include "protocol/stage/register_map.h"
 #include "reflectance/surface/surface.h"
 #include "sim/scene/effects_spec.h"
@@ -82,7 +84,8 @@ struct StageSpec {
   double shutter_s = 0.0;          ///< travel; light passes when it is fully open
   double following_error_s = 0.5;  ///< a blocked axis is noticed after so long
   double heartbeat_timeout_wall_s = 2.0;
-  stage::RegisterMap registers;  ///< our own
+  stage::RegisterMap registers;                ///< our own
+  std::optional<stage::DriveStageMap> drives;  ///< when set, the stage is one of drives; scales in wall time
 };
 
 /// Standard uncertainties (k = 1) of the directions: what the daemon is told, and what the truth is drawn from.

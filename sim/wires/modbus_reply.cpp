@@ -21,8 +21,7 @@ constexpr unsigned kMostRead = 125;
 constexpr unsigned kMostWritten = 123;
 constexpr unsigned kMostWrittenAndRead = 121;
 constexpr int kAddresses = 0x10000;
-constexpr std::uint8_t kAnyUnit = 0xFF;  // "the device itself" (Modbus Messaging on TCP/IP V1.0b, 4.4.2.2)
-constexpr unsigned kNoSuchUnit = 0x0B;   // gateway: the target does not respond
+constexpr unsigned kNoSuchUnit = 0x0B;  // gateway: the target does not respond
 
 struct Run {
   std::uint16_t first = 0;
@@ -60,6 +59,7 @@ std::variant<Request, ModbusException> parse(std::span<const std::uint8_t> pdu) 
   Request request;
   switch (pdu[0]) {
     case MODBUS_FC_READ_HOLDING_REGISTERS:
+    case MODBUS_FC_READ_INPUT_REGISTERS:
       if (pdu.size() != 5) return ModbusException::IllegalValue;
       request.read = run_at(pdu, 1);
       if (!is_run(*request.read, kMostRead)) return ModbusException::IllegalValue;
@@ -102,21 +102,35 @@ struct ModbusReply::Impl {
   }
 
   // Does the request; what the reply will read lies in the mapping afterwards.
-  std::optional<ModbusException> serve(const Request& request, StageFace& stage, Instant now) const {
+  std::optional<ModbusException> serve(const Request& request, RegisterFace& face, Instant now) const {
     // What is to be read is looked at first: a request that is refused must not have acted.
     std::array<std::uint16_t, kMostRead> words{};
     const auto read_into = [&](const Run& run) {
       const auto out = std::span(words).first(run.count);
-      const auto refused = stage.read(run.first, out, now);
+      const auto refused = face.read(run.first, out, now);
       if (!refused) std::memcpy(mapping->tab_registers + run.first, out.data(), out.size_bytes());
+      if (!refused) std::memcpy(mapping->tab_input_registers + run.first, out.data(), out.size_bytes());
       return refused;
     };
     if (request.read) {
       if (const auto refused = read_into(*request.read)) return refused;
     }
     if (!request.write) return std::nullopt;
-    if (const auto refused = stage.write(request.write->first, request.values, now)) return refused;
+    if (const auto refused = face.write(request.write->first, request.values, now)) return refused;
     return request.read ? read_into(*request.read) : std::nullopt;
+  }
+
+  // The exception that it ends in; 0: none.
+  unsigned obey(std::span<const std::uint8_t> pdu, RegisterFace& face, Instant now) const {
+    const auto parsed = parse(pdu);
+    const auto* wrong = std::get_if<ModbusException>(&parsed);
+    const bool reads_inputs = pdu[0] == MODBUS_FC_READ_INPUT_REGISTERS;
+    const bool reads_holding = pdu[0] == MODBUS_FC_READ_HOLDING_REGISTERS;
+    if ((reads_inputs && !face.has_input_registers()) || (reads_holding && face.has_input_registers())) {
+      return static_cast<unsigned>(ModbusException::IllegalFunction);
+    }
+    const auto refused = wrong != nullptr ? std::optional(*wrong) : serve(std::get<Request>(parsed), face, now);
+    return refused ? static_cast<unsigned>(*refused) : 0;
   }
 };
 
@@ -132,7 +146,7 @@ Result<ModbusReply> ModbusReply::make() {
   impl->theirs = FileDescriptor(pair[0]);
   impl->ours = FileDescriptor(pair[1]);
   impl->context = modbus_new_tcp("127.0.0.1", 502);  // never connected: it only builds frames into the socket pair
-  impl->mapping = modbus_mapping_new(0, 0, kAddresses, 0);
+  impl->mapping = modbus_mapping_new(0, 0, kAddresses, kAddresses);
   if (impl->context == nullptr || impl->mapping == nullptr) {
     return failure({.code = ErrorCode::Internal,
                     .device = "goniosim",
@@ -149,17 +163,9 @@ ModbusReply::ModbusReply(ModbusReply&&) noexcept = default;
 ModbusReply& ModbusReply::operator=(ModbusReply&&) noexcept = default;
 ModbusReply::~ModbusReply() = default;
 
-std::vector<std::uint8_t> ModbusReply::answer(std::span<const std::uint8_t> request, StageFace& stage, Instant now) {
-  const std::uint8_t unit = request[6];
-  unsigned exception = 0;
-  if (unit != stage.map().unit_id && unit != kAnyUnit) {
-    exception = kNoSuchUnit;
-  } else {
-    const auto parsed = parse(request.subspan(kPdu));
-    const auto* wrong = std::get_if<ModbusException>(&parsed);
-    const auto refused = wrong != nullptr ? std::optional(*wrong) : impl_->serve(std::get<Request>(parsed), stage, now);
-    if (refused) exception = static_cast<unsigned>(*refused);
-  }
+std::vector<std::uint8_t> ModbusReply::answer(std::span<const std::uint8_t> request, ModbusUnits& units, Instant now) {
+  RegisterFace* const face = units.unit(request[6]);
+  const unsigned exception = face == nullptr ? kNoSuchUnit : impl_->obey(request.subspan(kPdu), *face, now);
   if (exception != 0) {
     modbus_reply_exception(impl_->context, request.data(), exception);
   } else {
@@ -173,12 +179,12 @@ std::vector<std::uint8_t> ModbusReply::answer(std::span<const std::uint8_t> requ
 }
 
 std::vector<std::uint8_t> ModbusReply::answer_pdu(std::uint8_t unit, std::span<const std::uint8_t> pdu,
-                                                  StageFace& stage, Instant now) {
+                                                  ModbusUnits& units, Instant now) {
   const std::size_t length = pdu.size() + 1;  // with the unit
   std::vector<std::uint8_t> request{
       0, 0, 0, 0, static_cast<std::uint8_t>(length >> 8U), static_cast<std::uint8_t>(length), unit};
   request.insert(request.end(), pdu.begin(), pdu.end());
-  std::vector<std::uint8_t> reply = answer(request, stage, now);
+  std::vector<std::uint8_t> reply = answer(request, units, now);
   reply.erase(reply.begin(), reply.begin() + static_cast<std::ptrdiff_t>(std::min(kPdu, reply.size())));
   return reply;
 }

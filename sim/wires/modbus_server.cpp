@@ -106,7 +106,7 @@ void ModbusServer::take_requests(Client& client) {
     at += length;
     if (is_silent_) continue;
     const auto reply = instrument_.with(
-        [&](LiveInstrument::Parts& parts) { return reply_.answer(rest.first(length), parts.stage, parts.now); });
+        [&](LiveInstrument::Parts& parts) { return reply_.answer(rest.first(length), parts.units, parts.now); });
     client.to_send.insert(client.to_send.end(), reply.begin(), reply.end());
   }
   client.received.erase(client.received.begin(), client.received.begin() + static_cast<std::ptrdiff_t>(at));

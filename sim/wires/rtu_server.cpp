@@ -135,14 +135,16 @@ void RtuServer::take_what_stopped(Instant now) {
 
 void RtuServer::answer(std::span<const std::uint8_t> frame) {
   const std::uint8_t unit = frame.front();
+  constexpr std::uint8_t kLastUnit = 247;  // Modbus over Serial Line V1.02, 2.2
   const bool is_ours =
-      has_good_crc(frame) && frame.size() <= kLongestRtuFrame && instrument_.scene().stage.registers.unit_id == unit;
+      has_good_crc(frame) && frame.size() <= kLongestRtuFrame && unit <= kLastUnit &&
+      instrument_.with([unit](LiveInstrument::Parts& parts) { return parts.units.unit(unit) != nullptr; });
   if (!is_ours) return;
   ++requests_;
   if (is_silent_ || to_send_.size() >= kMostToSend) return;
   const auto pdu = frame.subspan(1, frame.size() - 3);
   const auto answered = instrument_.with(
-      [&](LiveInstrument::Parts& parts) { return reply_.answer_pdu(unit, pdu, parts.stage, parts.now); });
+      [&](LiveInstrument::Parts& parts) { return reply_.answer_pdu(unit, pdu, parts.units, parts.now); });
   const auto fault = next_fault();
   const auto is = [&](RtuFault::Kind kind) { return fault && fault->kind == kind; };
   if (is(RtuFault::Kind::Lost)) return;
