@@ -37,7 +37,7 @@ DriveNumbers numbers_of(const StageConfig& config, Axis axis) {
           .high_limit = std::max(a, b)};
 }
 
-Result<void> check_limits(const StageConfig& config, const MotionTarget& target) {
+Result<void> check_reach(const StageConfig& config, const MotionTarget& target) {
   for (const Axis axis : stage::kAllAxes) {
     const auto& wanted = target[stage::index_of(axis)];
     if (!wanted) continue;
@@ -306,7 +306,7 @@ Result<MotionToken> DriveStage::conclude(MotionToken token, Epoch epoch, Result<
 }
 
 Result<MotionToken> DriveStage::start_move(const MotionTarget& target, Epoch epoch) {
-  GONIO_TRY(check_limits(config_, target));
+  GONIO_TRY(check_reach(config_, target));
   const Result<Refusal> refusal = judge(epoch, &target);
   if (!refusal) return failure(refusal.error());
   const MotionToken token = fresh_token();

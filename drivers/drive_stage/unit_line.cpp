@@ -8,7 +8,7 @@
 namespace gonio::drivers {
 namespace {
 
-bool is_silence(ErrorCode code) {
+bool says_nothing(ErrorCode code) {
   return code == ErrorCode::TimedOut || code == ErrorCode::Unreachable;
 }
 
@@ -48,7 +48,7 @@ Result<void> UnitLine::talk(const std::string& what, Exchange exchange) {
       break;
     }
     link_.resync();
-    if (is_silence(done.error().code) && !silent_since_) silent_since_ = began;
+    if (says_nothing(done.error().code) && !silent_since_) silent_since_ = began;
     if (is_given_up()) break;
   }
   if (done) return done;

@@ -29,7 +29,7 @@ constexpr std::int64_t kHomingMode = 6;
 
 // Error codes of CiA 301, 7.2.7.1, and of CiA 402-2; the bits of `signals` are the vendor's.
 constexpr std::int64_t kLifeGuard = 0x8130;
-constexpr std::int64_t kFollowingError = 0x8611;
+constexpr std::int64_t kFollowingErrorCode = 0x8611;
 constexpr std::int64_t kOutOfRange = 0x8500;
 constexpr std::int64_t kRangeSignal = 0x04;
 constexpr std::int64_t kLineSignal = 0x20;
@@ -81,7 +81,7 @@ void DriveFace::begin(Instant now) {
   instrument_.advance_to(now);
   if (boots_ != stage().boot_counter() || axis_boots_ != axis().boots()) power_up();
   if (state_ != State::Fault && stage().is_drive_tripped(axis_)) fail(kLifeGuard, kLineSignal, now);
-  if (state_ != State::Fault && axis().fault() != 0) fail(kFollowingError, kFollowingSignal, now);
+  if (state_ != State::Fault && axis().fault() != 0) fail(kFollowingErrorCode, kFollowingSignal, now);
   if (state_ != State::Fault && stage().is_interlock_open()) state_ = State::SwitchOnDisabled;
   stage().feed_drive(axis_, now);
 }
