@@ -7,7 +7,7 @@ namespace gonio::sim {
 double DetectorCharge::signal(double electrons) const {
   const double bent = after_nonlinearity(scene_.detector, electrons, truth_.nonlinearity());
   if (!scene_.effects.response) return bent;
-  const double full_scale = kFullScaleDn * scene_.detector.electrons_per_dn;
+  const double full_scale = scene_.detector.full_scale_dn() * scene_.detector.electrons_per_dn;
   return full_scale * response(*scene_.effects.response, bent / full_scale);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/devices/pixel_pattern.h"
 #include "sim/optics/speckle_pattern.h"
 #include "sim/scene/chance.h"
 
@@ -32,11 +33,12 @@ class PixelModel {
   [[nodiscard]] double cumulant3() const { return electrons(1.0) * std::pow(dn_per_electron_, 3); }
   [[nodiscard]] double cumulant4() const { return electrons(1.0) * std::pow(dn_per_electron_, 4) - 1.0 / 120.0; }
 
-  [[nodiscard]] double draw(Chance& chance, double lit) const {
+  [[nodiscard]] double draw(Chance& chance, double lit, bool is_bad) const {
     const double read = spec_.read_noise_dn == 0.0 ? 0.0 : spec_.read_noise_dn * chance.normal();
     const double signal =
         chance.poisson(electrons(lit)) * dn_per_electron_ + read * dn_per_electron_ * spec_.electrons_per_dn;
-    return std::clamp(std::round(offset_dn_ + signal), 0.0, kFullScaleDn);
+    const double most = is_bad ? std::floor(PixelPattern::kEarlyFull * spec_.full_scale_dn()) : spec_.full_scale_dn();
+    return std::clamp(std::round(offset_dn_ + signal), 0.0, most);
   }
 
  private:
@@ -81,22 +83,24 @@ std::uint32_t pixels_inside(const DetectorSpec& spec) {
 }
 
 std::vector<double> drawn_pixels(const DetectorSpec& spec, const PixelModel& pixel, const SpecklePattern& speckle,
-                                 Chance& chance) {
+                                 const PixelPattern& pattern, Chance& chance) {
   const Aperture a = aperture_of(spec);
   std::vector<double> values;
   for (int y = 0; y < spec.height_px; ++y) {
     const Chord row = chord(a, spec.width_px, y);
-    for (int x = row.first; x <= row.last; ++x) values.push_back(pixel.draw(chance, speckle(x, y)));
+    for (int x = row.first; x <= row.last; ++x) {
+      values.push_back(pixel.draw(chance, speckle(x, y) * pattern.response(x, y), pattern.is_bad(x, y)));
+    }
   }
   return values;
 }
 
-RegionStatistics statistics_of(const std::vector<double>& values) {
+RegionStatistics statistics_of(const std::vector<double>& values, double full_scale_dn) {
   const double n = static_cast<double>(values.size());
   RegionStatistics s{.n = static_cast<std::uint32_t>(values.size())};
   for (const double v : values) {
     s.mean += v / n;
-    s.saturated += v >= kFullScaleDn ? 1U : 0U;
+    s.saturated += v >= full_scale_dn ? 1U : 0U;
   }
   for (const double v : values) {
     const double d = v - s.mean;
@@ -119,13 +123,14 @@ std::vector<std::uint16_t> render_frame(const DetectorSpec& spec, const Exposure
   const PixelModel pixel(spec, exposure);
   const Aperture middle = aperture_of(spec);
   const SpecklePattern speckle(spec.speckle, spec.width_px, spec.height_px, seed, exposure.place);
+  const PixelPattern pattern(spec, seed);
   Chance chance(seed, Purpose::Pixels, exposure.number);
   std::vector<std::uint16_t> frame;
   frame.reserve(static_cast<std::size_t>(spec.width_px) * static_cast<std::size_t>(spec.height_px));
   for (int y = 0; y < spec.height_px; ++y) {
     for (int x = 0; x < spec.width_px; ++x) {
-      const double lit = lit_share(spec, distance(middle, x, y)) * speckle(x, y);
-      frame.push_back(static_cast<std::uint16_t>(pixel.draw(chance, lit)));
+      const double lit = lit_share(spec, distance(middle, x, y)) * speckle(x, y) * pattern.response(x, y);
+      frame.push_back(static_cast<std::uint16_t>(pixel.draw(chance, lit, pattern.is_bad(x, y))));
     }
   }
   return frame;
@@ -138,10 +143,12 @@ RegionStatistics draw_region(const DetectorSpec& spec, const Exposure& exposure,
   Chance chance(seed, Purpose::Pixels, exposure.number);
   const double n = pixels_inside(spec);
   const double sigma = std::sqrt(pixel.cumulant2());
-  const double headroom = std::min(pixel.mean_dn(), kFullScaleDn - pixel.mean_dn());
-  if (headroom < kFarFromClipping * sigma || sigma < kFinelyRounded || spec.speckle.contrast != 0.0) {
+  const double headroom = std::min(pixel.mean_dn(), spec.full_scale_dn() - pixel.mean_dn());
+  const PixelPattern pattern(spec, seed);
+  if (headroom < kFarFromClipping * sigma || sigma < kFinelyRounded || spec.speckle.contrast != 0.0 ||
+      !pattern.is_even()) {
     const SpecklePattern speckle(spec.speckle, spec.width_px, spec.height_px, seed, exposure.place);
-    return statistics_of(drawn_pixels(spec, pixel, speckle, chance));
+    return statistics_of(drawn_pixels(spec, pixel, speckle, pattern, chance), spec.full_scale_dn());
   }
   // Mean and variance of nearly normal pixels are independent; skewness and kurtosis scatter by 6/n and 24/n.
   RegionStatistics s{.n = static_cast<std::uint32_t>(n)};
@@ -155,7 +162,7 @@ RegionStatistics draw_region(const DetectorSpec& spec, const Exposure& exposure,
 }
 
 double after_nonlinearity(const DetectorSpec& spec, double light_electrons, double nonlinearity) {
-  return light_electrons * (1.0 + nonlinearity * light_electrons / (kFullScaleDn * spec.electrons_per_dn));
+  return light_electrons * (1.0 + nonlinearity * light_electrons / (spec.full_scale_dn() * spec.electrons_per_dn));
 }
 
 }  // namespace gonio::sim

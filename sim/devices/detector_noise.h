@@ -39,9 +39,9 @@ struct RegionStatistics {
   std::uint32_t saturated = 0;
 };
 
-/// The frame of an exposure, row by row: Poisson electrons, read noise, offset, rounded and clipped to 12 bits. The lit
-/// spot is a disc in the middle with an edge two pixels wide, as grainy as the speckle of its place. The same exposure
-/// of the same seed gives the same frame.
+/// The frame of an exposure, row by row: Poisson electrons, read noise, offset, rounded and clipped to its bits. The
+/// lit spot is a disc in the middle with an edge two pixels wide, as grainy as the speckle of its place. The same
+/// exposure of the same seed gives the same frame.
 [[nodiscard]] std::vector<std::uint16_t> render_frame(const DetectorSpec& spec, const Exposure& exposure,
                                                       std::uint64_t seed);
 

@@ -24,6 +24,7 @@ enum class Purpose : std::uint32_t {
   DarkWander = 21,       ///< counter: component
   OffsetWander = 22,     ///< counter: component
   Speckle = 23,          ///< counter: place
+  PixelPattern = 24,
 };
 
 /// A stream of chance that depends on nothing but (seed, purpose, counter): how often one effect draws never shifts

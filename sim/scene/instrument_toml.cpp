@@ -77,15 +77,16 @@ std::string detector_section(const Scene& scene, const WireAddresses& addresses)
   constexpr double kRounding = 1.0 / 12.0;  // the variance of rounding to whole DN
   return fmt::format(
       "\n[detector]\nkind = \"genicam\"\naddress = \"{}\"\nserial = \"{}\"\nwidth_px = {}\nheight_px = {}\n"
-      "pixel_format = \"Mono12\"\npacket_size_bytes = 1400\nshortest_exposure_s = {}\nlongest_exposure_s = {}\n"
+      "pixel_format = \"{}\"\npacket_size_bytes = 1400\nshortest_exposure_s = {}\nlongest_exposure_s = {}\n"
       "gain_db = 0.0\nframes_at_most = {}\n"
       "\n[detector.aperture]\ncentre_x_px = {}\ncentre_y_px = {}\nradius_px = {}\n"
       "\n[detector.model]\nelectrons_per_dn = {}\nread_noise_dn = {}\nfull_scale_dn = {}\nexposure_offset_s = {:.10g}\n"
       "u_exposure_offset_s = {:.10g}\nu_linearity = {}\nu_dark_drift_dn_per_s = {:.10g}\n",
-      addresses.camera_address, spec.serial, spec.width_px, spec.height_px, wall_s(scene, spec.shortest_exposure_s),
-      wall_s(scene, spec.longest_exposure_s), spec.frames_at_most, aperture.centre_x_px, aperture.centre_y_px,
-      aperture.radius_px, spec.electrons_per_dn, std::sqrt(spec.read_noise_dn * spec.read_noise_dn + kRounding),
-      static_cast<int>(kFullScaleDn), wall_s(scene, told.exposure_offset_s), wall_s(scene, told.u_exposure_offset_s),
+      addresses.camera_address, spec.serial, spec.width_px, spec.height_px, spec.pixel_format,
+      wall_s(scene, spec.shortest_exposure_s), wall_s(scene, spec.longest_exposure_s), spec.frames_at_most,
+      aperture.centre_x_px, aperture.centre_y_px, aperture.radius_px, spec.electrons_per_dn,
+      std::sqrt(spec.read_noise_dn * spec.read_noise_dn + kRounding), static_cast<int>(spec.full_scale_dn()),
+      wall_s(scene, told.exposure_offset_s), wall_s(scene, told.u_exposure_offset_s),
       told.u_linearity.value_or(spec.u_linearity), told.u_dark_drift_dn_per_s * scene.time_scale);
 }
 

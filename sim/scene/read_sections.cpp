@@ -29,8 +29,35 @@ void read_lamp(TomlReader t, LampSpec& lamp) {
   lamp.u_reproducibility = t.number_or("u_reproducibility", 0.0, kShare);
 }
 
+struct SentPixels {
+  std::string_view name;
+  int bits;
+};
+constexpr std::array<SentPixels, 9> kSentPixels{{{"Mono8", 8},
+                                                 {"Mono10", 10},
+                                                 {"Mono12", 12},
+                                                 {"Mono14", 14},
+                                                 {"Mono16", 16},
+                                                 {"Mono10Packed", 10},
+                                                 {"Mono12Packed", 12},
+                                                 {"Mono10p", 10},
+                                                 {"Mono12p", 12}}};
+constexpr std::size_t kUsualPixels = 2;
+constexpr auto kPixelFormatNames = [] {
+  std::array<std::string_view, kSentPixels.size()> names;
+  for (std::size_t k = 0; k < names.size(); ++k) names[k] = kSentPixels[k].name;
+  return names;
+}();
+constexpr std::array<std::string_view, 2> kTemperatureSensors{"housing", "none"};
+
 void read_detector(TomlReader t, DetectorSpec& detector) {
   detector.serial = t.text_or("serial", detector.serial);
+  const SentPixels& sent = kSentPixels[t.choice_or("pixel_format", kUsualPixels, kPixelFormatNames)];
+  detector.pixel_format = sent.name;
+  detector.bits = sent.bits;
+  detector.has_temperature = t.choice_or("temperature", 0, kTemperatureSensors) == 0;
+  detector.flat_sigma = t.number_or("flat_sigma", 0.0, {.least = 0.0, .most = 0.3});
+  detector.bad_fraction = t.number_or("bad_fraction", 0.0, {.least = 0.0, .most = 0.5});
   detector.width_px = static_cast<int>(t.integer_or("width_px", 64, 16, 1024));
   detector.height_px = static_cast<int>(t.integer_or("height_px", 64, 16, 1024));
   detector.electrons_per_s = t.number("electrons_per_s", kPositive);

@@ -60,9 +60,14 @@ struct DetectorSpec {
   double longest_exposure_s = 0.512;
   int frames_at_most = 64;
   SpeckleSpec speckle;
+  std::string pixel_format = "Mono12";  ///< told to the daemon; the camera also takes the other packings of its bits
+  int bits = 12;                        ///< of a pixel: those of the format
+  bool has_temperature = true;          ///< a sensor in the camera's housing
+  double flat_sigma = 0.0;              ///< of the pixels' response to even light, relative
+  double bad_fraction = 0.0;            ///< of the pixels; see PixelPattern
+  [[nodiscard]] double full_scale_dn() const { return static_cast<double>((1U << static_cast<unsigned>(bits)) - 1U); }
   double control_heartbeat_wall_s = 3.0;  ///< a silent controller of the camera is released after so long; wall time
 };
-inline constexpr double kFullScaleDn = 4095.0;  ///< 12 bits
 
 /// One axis; its own unit, scene time.
 struct AxisSpec {

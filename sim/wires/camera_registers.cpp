@@ -7,6 +7,7 @@
 #include <array>
 
 #include "sim/wires/big_endian.h"
+#include "sim/wires/pixel_packing.h"
 
 namespace gonio::sim {
 namespace {
@@ -17,6 +18,7 @@ constexpr std::uint32_t kShortestHeartbeatMs = 500;  // GigE Vision 2.0, 28.34
 constexpr std::uint32_t kSmallestPacket = 576;       // the IPv4 datagram that every host must take
 constexpr std::uint32_t kLargestPacket = 9000;
 constexpr std::uint32_t kUsualPacket = 1400;
+constexpr std::uint32_t kSmallestSide = 4;  // pixels
 
 /// A register that takes writes, and which values.
 struct Writable {
@@ -33,9 +35,6 @@ constexpr std::array kWritable{
     Writable{address::kStreamAddress, 0, kAny},
     Writable{0x0D08, 0, kAny},  // packet delay
     Writable{address::kAcquisition, 0, 1},
-    Writable{address::kOffsetX, 0, 0},
-    Writable{address::kOffsetY, 0, 0},
-    Writable{address::kPixelFormat, kMono12, kMono12},
     Writable{address::kAcquisitionMode, 0, 0},
     Writable{address::kTriggerMode, 0, 1},
     Writable{address::kTriggerSource, 0, 0},
@@ -47,18 +46,28 @@ constexpr std::array kWritable{
     Writable{address::kGainDb + 4, 0, kAny},
 };
 
+bool is_of_the_image(std::uint32_t at) {
+  return at == address::kWidth || at == address::kHeight || at == address::kOffsetX || at == address::kOffsetY ||
+         at == address::kPixelFormat;
+}
+
 }  // namespace
 
 CameraRegisters::CameraRegisters(const CameraIdentity& identity)
-    : memory_(kMemory, 0), description_(genicam_description(identity)) {
+    : sensor_width_(static_cast<std::uint32_t>(identity.width_px)),
+      sensor_height_(static_cast<std::uint32_t>(identity.height_px)),
+      bits_(identity.bits),
+      memory_(kMemory, 0),
+      description_(genicam_description(identity)) {
   describe_device(identity);
   set_word(address::kHeartbeatTimeoutMs, identity.heartbeat_timeout_ms);
   set_word(address::kPacketSize, kUsualPacket);
-  set_word(address::kWidth, static_cast<std::uint32_t>(identity.width_px));
-  set_word(address::kHeight, static_cast<std::uint32_t>(identity.height_px));
-  set_word(address::kPixelFormat, kMono12);
+  set_word(address::kWidth, sensor_width_);
+  set_word(address::kHeight, sensor_height_);
+  set_word(address::kPixelFormat, sent_format(identity.pixel_format)->code);
+  refresh_payload_size();
   set_number(address::kExposureUs, identity.shortest_exposure_us);
-  set_number(address::kTemperatureC, identity.temperature_c);
+  set_number(address::kTemperatureC, identity.temperature_c.value_or(0.0));
 }
 
 void CameraRegisters::describe_device(const CameraIdentity& identity) {
@@ -77,10 +86,10 @@ void CameraRegisters::describe_device(const CameraIdentity& identity) {
   set_text(0x00A8, 48, "goniosim");
   set_text(0x00D8, 16, identity.serial);
   set_text(0x0200, 512, fmt::format("Local:goniosim.xml;{:x};{:x}", address::kDescription, description_.size()));
-  set_word(0x0600, 1);           // network interfaces
-  set_word(0x0904, 1);           // stream channels
-  set_word(0x0934, 0x7);         // concatenation, WRITEMEM, PACKETRESEND
-  set_word(0x0940, 1000000000);  // ticks per second, low word
+  set_word(0x0600, 1);                // network interfaces
+  set_word(0x0904, 1);                // stream channels
+  set_word(0x0934, 0x7);              // concatenation, WRITEMEM, PACKETRESEND
+  set_word(0x0940, kTicksPerSecond);  // low word
 }
 
 std::uint32_t CameraRegisters::word(std::uint32_t at) const {
@@ -119,10 +128,8 @@ GvcpStatus CameraRegisters::read(std::uint32_t at, std::size_t count, std::vecto
 GvcpStatus CameraRegisters::check_write(std::uint32_t at, std::uint32_t value) const {
   if (at % 4 != 0) return GvcpStatus::BadAlignment;
   if (at + 4 > memory_.size()) return GvcpStatus::InvalidAddress;
-  // The image has one size: what is asked for must be it. A packet size comes with flags in its upper half.
-  if (at == address::kWidth || at == address::kHeight) {
-    return value == word(at) ? GvcpStatus::Success : GvcpStatus::InvalidParameter;
-  }
+  if (is_of_the_image(at)) return check_image(at, value);
+  // A packet size comes with flags in its upper half.
   if (at == address::kPacketSize) {
     const std::uint32_t size = value & 0xFFFFU;
     return size >= kSmallestPacket && size <= kLargestPacket ? GvcpStatus::Success : GvcpStatus::InvalidParameter;
@@ -130,6 +137,28 @@ GvcpStatus CameraRegisters::check_write(std::uint32_t at, std::uint32_t value) c
   const auto* found = std::ranges::find(kWritable, at, &Writable::at);
   if (found == kWritable.end()) return GvcpStatus::WriteProtect;
   return value >= found->least && value <= found->most ? GvcpStatus::Success : GvcpStatus::InvalidParameter;
+}
+
+// Region and format stand still while frames are on their way. A region lies on the sensor: the offset first goes to 0
+// where a larger one is wanted.
+GvcpStatus CameraRegisters::check_image(std::uint32_t at, std::uint32_t value) const {
+  if (word(address::kAcquisition) != 0) return GvcpStatus::AccessDenied;
+  if (at == address::kPixelFormat) {
+    const SentFormat* format = sent_format(value);
+    return format != nullptr && format->bits == bits_ ? GvcpStatus::Success : GvcpStatus::InvalidParameter;
+  }
+  const bool is_x = at == address::kWidth || at == address::kOffsetX;
+  const bool is_size = at == address::kWidth || at == address::kHeight;
+  const std::uint32_t sensor = is_x ? sensor_width_ : sensor_height_;
+  const std::uint32_t other =
+      is_size ? word(is_x ? address::kOffsetX : address::kOffsetY) : word(is_x ? address::kWidth : address::kHeight);
+  const bool fits = value <= sensor && other <= sensor - value && (!is_size || value >= kSmallestSide);
+  return fits ? GvcpStatus::Success : GvcpStatus::InvalidParameter;
+}
+
+void CameraRegisters::refresh_payload_size() {
+  const SentFormat* format = sent_format(word(address::kPixelFormat));
+  set_word(address::kPayloadSize, payload_size(*format, word(address::kWidth) * word(address::kHeight)));
 }
 
 std::span<const std::uint8_t> CameraRegisters::discovery() const {

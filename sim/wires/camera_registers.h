@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,24 +28,27 @@ inline constexpr std::uint32_t kTriggerMode = 0x401C;
 inline constexpr std::uint32_t kTriggerSource = 0x4020;
 inline constexpr std::uint32_t kTriggerSelector = 0x4024;
 inline constexpr std::uint32_t kTriggerSoftware = 0x4028;
+inline constexpr std::uint32_t kPayloadSize = 0x402C;   ///< bytes of an image; read only
 inline constexpr std::uint32_t kExposureUs = 0x4030;    ///< 8 bytes, double
 inline constexpr std::uint32_t kGainDb = 0x4038;        ///< 8 bytes, double
 inline constexpr std::uint32_t kTemperatureC = 0x4040;  ///< 8 bytes, double
 inline constexpr std::uint32_t kDescription = 0x10000;  ///< the GenICam XML
 }  // namespace address
 
-inline constexpr std::uint32_t kMono12 = 0x01100005;  ///< 12 bits in 16 (GenICam Pixel Format Naming Convention)
+inline constexpr std::uint32_t kTicksPerSecond = 125000000;  ///< of the camera's clock, as many a real one's
 
 /// Who the camera says it is, and what it can do.
 struct CameraIdentity {
   std::string address;  ///< IPv4
   std::string serial;   ///< at most 15 characters
-  int width_px = 0;
+  int width_px = 0;     ///< of the sensor
   int height_px = 0;
+  int bits = 12;                        ///< of a pixel: it sends the formats that have them
+  std::string pixel_format = "Mono12";  ///< at power-up
   double shortest_exposure_us = 0.0;
   double longest_exposure_us = 0.0;
   double most_gain_db = 0.0;
-  double temperature_c = 0.0;
+  std::optional<double> temperature_c;  ///< nothing: it has no sensor
   std::uint32_t heartbeat_timeout_ms = 3000;
 };
 
@@ -65,6 +69,8 @@ class CameraRegisters {
   [[nodiscard]] GvcpStatus read(std::uint32_t at, std::size_t count, std::vector<std::uint8_t>& out) const;
   /// Whether this word takes this value: InvalidAddress, BadAlignment, WriteProtect, InvalidParameter.
   [[nodiscard]] GvcpStatus check_write(std::uint32_t at, std::uint32_t value) const;
+  /// The image's size follows from region and format: to be called after one of them was written.
+  void refresh_payload_size();
   /// The first 248 bytes, as discovery answers them.
   [[nodiscard]] std::span<const std::uint8_t> discovery() const;
 
@@ -72,6 +78,11 @@ class CameraRegisters {
   void set_text(std::uint32_t at, std::size_t room, const std::string& text);
   void describe_device(const CameraIdentity& identity);
 
+  [[nodiscard]] GvcpStatus check_image(std::uint32_t at, std::uint32_t value) const;
+
+  std::uint32_t sensor_width_;
+  std::uint32_t sensor_height_;
+  int bits_;
   std::vector<std::uint8_t> memory_;
   std::string description_;
 };

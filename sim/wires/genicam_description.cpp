@@ -1,11 +1,12 @@
 // The GenICam description: features, and the registers behind them.
 #include <fmt/format.h>
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/wires/camera_registers.h"
+#include "sim/wires/pixel_packing.h"
 
 namespace gonio::sim {
 namespace {
@@ -40,7 +41,7 @@ class Description {
         name, at, is_writable ? "RW" : "RO", least, most, unit);
   }
 
-  void choice(std::string_view name, std::uint32_t at, std::initializer_list<Entry> entries) {
+  void choice(std::string_view name, std::uint32_t at, const std::vector<Entry>& entries) {
     feature(name);
     integer_register(name, at);
     body_ += fmt::format("<Enumeration Name=\"{}\">", name);
@@ -93,12 +94,17 @@ std::string genicam_description(const CameraIdentity& identity) {
   xml.constant("SensorHeight", height);
   xml.constant("WidthMax", width);
   xml.constant("HeightMax", height);
-  xml.integer("Width", address::kWidth, width, width);
-  xml.integer("Height", address::kHeight, height, height);
-  xml.integer("OffsetX", address::kOffsetX, 0, 0);
-  xml.integer("OffsetY", address::kOffsetY, 0, 0);
-  xml.constant("PayloadSize", 2 * width * height);
-  xml.choice("PixelFormat", address::kPixelFormat, {{"Mono12", kMono12}});
+  constexpr std::uint32_t kSmallestSide = 4;
+  xml.integer("Width", address::kWidth, kSmallestSide, width);
+  xml.integer("Height", address::kHeight, kSmallestSide, height);
+  xml.integer("OffsetX", address::kOffsetX, 0, width - kSmallestSide);
+  xml.integer("OffsetY", address::kOffsetY, 0, height - kSmallestSide);
+  xml.integer("PayloadSize", address::kPayloadSize, 1, 2 * width * height);
+  std::vector<Entry> formats;
+  for (const SentFormat& format : sent_formats()) {
+    if (format.bits == identity.bits) formats.push_back({format.name, format.code});
+  }
+  xml.choice("PixelFormat", address::kPixelFormat, formats);
   xml.choice("AcquisitionMode", address::kAcquisitionMode, {{"Continuous", 0}});
   xml.choice("TriggerSelector", address::kTriggerSelector, {{"FrameStart", 0}});
   xml.choice("TriggerMode", address::kTriggerMode, {{"Off", 0}, {"On", 1}});
@@ -108,7 +114,7 @@ std::string genicam_description(const CameraIdentity& identity) {
   xml.command("AcquisitionStop", address::kAcquisition, 0, false);
   xml.number("ExposureTime", address::kExposureUs, identity.shortest_exposure_us, identity.longest_exposure_us, "us");
   xml.number("Gain", address::kGainDb, 0.0, identity.most_gain_db, "dB");
-  xml.number("DeviceTemperature", address::kTemperatureC, -50.0, 150.0, "C", false);
+  if (identity.temperature_c) xml.number("DeviceTemperature", address::kTemperatureC, -50.0, 150.0, "C", false);
   xml.integer("GevHeartbeatTimeout", address::kHeartbeatTimeoutMs, 500, 60000);
   xml.constant("TLParamsLocked", 0);
   return xml.text();

@@ -38,6 +38,8 @@ Result<std::unique_ptr<GigeCameraServer>> GigeCameraServer::start(LiveInstrument
   if (!control) return failure(std::move(control).error());
   auto stream = bind_udp(address, 0);
   if (!stream) return failure(std::move(stream).error());
+  auto broadcasts = hear_broadcasts(kGvcpPort);
+  if (!broadcasts) return failure(std::move(broadcasts).error());
   auto wake_up = make_wake_up();
   if (!wake_up) return failure(std::move(wake_up).error());
   const CameraIdentity identity = instrument.with([&](LiveInstrument::Parts& parts) {
@@ -47,23 +49,27 @@ Result<std::unique_ptr<GigeCameraServer>> GigeCameraServer::start(LiveInstrument
         .serial = detector.serial,
         .width_px = detector.width_px,
         .height_px = detector.height_px,
+        .bits = detector.bits,
+        .pixel_format = detector.pixel_format,
         .shortest_exposure_us = in_microseconds(parts.camera.shortest_exposure()),
         .longest_exposure_us = in_microseconds(parts.camera.longest_exposure()),
         .most_gain_db = CameraModel::kMostGainDb,
-        .temperature_c = in_celsius(parts.camera.temperature(parts.now)),
+        .temperature_c =
+            detector.has_temperature ? std::optional(in_celsius(parts.camera.temperature(parts.now))) : std::nullopt,
         .heartbeat_timeout_ms = static_cast<std::uint32_t>(std::lround(1000.0 * detector.control_heartbeat_wall_s))};
   });
-  std::unique_ptr<GigeCameraServer> server(
-      new GigeCameraServer(instrument, identity, *std::move(control), *std::move(stream), *std::move(wake_up)));
+  std::unique_ptr<GigeCameraServer> server(new GigeCameraServer(
+      instrument, identity, *std::move(control), *std::move(broadcasts), *std::move(stream), *std::move(wake_up)));
   server->thread_ = std::jthread([s = server.get()](const std::stop_token& stop) { s->run(stop); });
   return server;
 }
 
 GigeCameraServer::GigeCameraServer(LiveInstrument& instrument, CameraIdentity identity, FileDescriptor control,
-                                   FileDescriptor stream, FileDescriptor wake_up)
+                                   FileDescriptor broadcasts, FileDescriptor stream, FileDescriptor wake_up)
     : instrument_(instrument),
       identity_(std::move(identity)),
       control_(std::move(control)),
+      broadcasts_(std::move(broadcasts)),
       stream_socket_(std::move(stream)),
       wake_up_(std::move(wake_up)),
       registers_(identity_) {
@@ -104,12 +110,14 @@ timespec GigeCameraServer::poll_timeout(std::optional<Instant> due) const {
 void GigeCameraServer::run(const std::stop_token& stop) {
   std::optional<Instant> due;
   while (!stop.stop_requested()) {
-    std::array<pollfd, 2> watched{{{wake_up_.get(), POLLIN, 0}, {control_.get(), POLLIN, 0}}};
+    std::array<pollfd, 3> watched{
+        {{wake_up_.get(), POLLIN, 0}, {control_.get(), POLLIN, 0}, {broadcasts_.get(), POLLIN, 0}}};
     const timespec timeout = poll_timeout(due);
     if (::ppoll(watched.data(), watched.size(), &timeout, nullptr) < 0) continue;
     drain(wake_up_);
     power_up_if_wanted();  // before anything that was sent after it is read
     if ((watched[1].revents & POLLIN) != 0) receive();
+    if ((watched[2].revents & POLLIN) != 0) answer_search();
     due = work(instrument_.clock().now());
   }
 }
@@ -141,8 +149,17 @@ void GigeCameraServer::collect_frame() {
   receiver.sin_addr.s_addr = htonl(registers_.word(address::kStreamAddress));
   // Outside of the lock: a frame takes longer to draw than any other request.
   const Scene& scene = instrument_.scene();
-  stream_.add(make_frame(scene, finished->exposure, finished->frame_id),
+  stream_.add(make_frame(scene, finished->exposure, finished->frame_id), region(),
               registers_.word(address::kPacketSize) & 0xFFFFU, receiver);
+}
+
+SentRegion GigeCameraServer::region() const {
+  const auto number = [&](std::uint32_t at) { return static_cast<int>(registers_.word(at)); };
+  return {.width = number(address::kWidth),
+          .height = number(address::kHeight),
+          .offset_x = number(address::kOffsetX),
+          .offset_y = number(address::kOffsetY),
+          .pixel_format = registers_.word(address::kPixelFormat)};
 }
 
 void GigeCameraServer::release_silent_controller(Instant now) {
@@ -176,6 +193,22 @@ void GigeCameraServer::receive() {
   if (status != GvcpStatus::Success && request->command != GvcpCommand::WriteRegister) answer.clear();
   const auto datagram = gvcp_acknowledge(*request, status, answer);
   ::sendto(control_.get(), datagram.data(), datagram.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&sender_),
+           size);
+}
+
+// Somebody looks for cameras. Only this machine's loopback is answered: elsewhere a simulated camera is not to be met.
+void GigeCameraServer::answer_search() {
+  std::array<std::uint8_t, kLongestDatagram + 1> bytes{};
+  sockaddr_in sender{};
+  socklen_t size = sizeof sender;
+  const ssize_t n =
+      ::recvfrom(broadcasts_.get(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&sender), &size);
+  constexpr std::uint32_t kLoopback = 127;
+  if (n <= 0 || is_silent_ || ntohl(sender.sin_addr.s_addr) >> 24U != kLoopback) return;
+  const auto request = parse_gvcp(std::span(bytes).first(static_cast<std::size_t>(n)));
+  if (!request || request->command != GvcpCommand::Discovery) return;
+  const auto datagram = gvcp_acknowledge(*request, GvcpStatus::Success, registers_.discovery());
+  ::sendto(control_.get(), datagram.data(), datagram.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&sender),
            size);
 }
 
@@ -278,6 +311,7 @@ GvcpStatus GigeCameraServer::apply(std::uint32_t at) {
     instrument_.with([](LiveInstrument::Parts& parts) { parts.camera.restart_frame_ids(); });
   }
   if (at == address::kTriggerSoftware && registers_.word(at) != 0) return trigger();
+  if (at >= address::kWidth && at <= address::kPixelFormat) registers_.refresh_payload_size();
   const bool is_first_half = at == address::kExposureUs || at == address::kGainDb;
   return is_number(at) && !is_first_half ? apply_settings() : GvcpStatus::Success;
 }

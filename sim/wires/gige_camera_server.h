@@ -36,17 +36,19 @@ class GigeCameraServer {
   void set_silent(bool on);
 
  private:
-  GigeCameraServer(LiveInstrument& instrument, CameraIdentity identity, FileDescriptor control, FileDescriptor stream,
-                   FileDescriptor wake_up);
+  GigeCameraServer(LiveInstrument& instrument, CameraIdentity identity, FileDescriptor control,
+                   FileDescriptor broadcasts, FileDescriptor stream, FileDescriptor wake_up);
   void run(const std::stop_token& stop);
   [[nodiscard]] timespec poll_timeout(std::optional<Instant> due) const;
   void power_up();
   void power_up_if_wanted();
   std::optional<Instant> work(Instant now);
   void collect_frame();
+  [[nodiscard]] SentRegion region() const;
   void release_silent_controller(Instant now);
 
   void receive();
+  void answer_search();
   [[nodiscard]] GvcpStatus serve(const GvcpRequest& request, std::vector<std::uint8_t>& answer);
   [[nodiscard]] GvcpStatus read_registers(const GvcpRequest& request, std::vector<std::uint8_t>& answer) const;
   [[nodiscard]] GvcpStatus read_memory(const GvcpRequest& request, std::vector<std::uint8_t>& answer) const;
@@ -62,6 +64,7 @@ class GigeCameraServer {
   LiveInstrument& instrument_;
   CameraIdentity identity_;
   FileDescriptor control_;
+  FileDescriptor broadcasts_;
   FileDescriptor stream_socket_;
   FileDescriptor wake_up_;
   CameraRegisters registers_;

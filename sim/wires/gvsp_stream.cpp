@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "sim/wires/big_endian.h"
 #include "sim/wires/camera_registers.h"
+#include "sim/wires/pixel_packing.h"
 
 namespace gonio::sim {
 namespace {
@@ -19,35 +21,36 @@ constexpr double kBytesPerSecond = 100e6;     // a receive buffer of the usual 2
 constexpr std::uint32_t kImage = 1;           // payload type
 enum Format : std::uint8_t { Leader = 1, Trailer = 2, Data = 3 };
 
-std::vector<std::uint8_t> leader_of(const CameraFrame& frame) {
-  const auto ticks = static_cast<std::uint64_t>(frame.exposure_end.time_since_epoch().count());
+std::vector<std::uint8_t> leader_of(const CameraFrame& frame, const SentRegion& region) {
+  constexpr std::uint64_t kNsPerTick = 1000000000 / kTicksPerSecond;
+  const auto ticks = static_cast<std::uint64_t>(frame.exposure_end.time_since_epoch().count()) / kNsPerTick;
   std::vector<std::uint8_t> leader;
   append32(leader, kImage);
   append32(leader, static_cast<std::uint32_t>(ticks >> 32U));
   append32(leader, static_cast<std::uint32_t>(ticks));
-  append32(leader, kMono12);
-  append32(leader, static_cast<std::uint32_t>(frame.width));
-  append32(leader, static_cast<std::uint32_t>(frame.height));
-  for (int k = 0; k < 3; ++k) append32(leader, 0);  // offsets and padding
+  append32(leader, region.pixel_format);
+  for (const int value : {region.width, region.height, region.offset_x, region.offset_y}) {
+    append32(leader, static_cast<std::uint32_t>(value));
+  }
+  append32(leader, 0);  // padding
   return leader;
 }
 
-std::vector<std::uint8_t> trailer_of(const CameraFrame& frame) {
+std::vector<std::uint8_t> trailer_of(const SentRegion& region) {
   std::vector<std::uint8_t> trailer;
   append32(trailer, kImage);
-  append32(trailer, static_cast<std::uint32_t>(frame.height));
+  append32(trailer, static_cast<std::uint32_t>(region.height));
   return trailer;
 }
 
-// Pixels go low byte first.
-std::vector<std::uint8_t> bytes_of(const CameraFrame& frame) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(2 * frame.pixels.size());
-  for (const std::uint16_t pixel : frame.pixels) {
-    bytes.push_back(static_cast<std::uint8_t>(pixel));
-    bytes.push_back(static_cast<std::uint8_t>(pixel >> 8U));
+std::vector<std::uint8_t> bytes_of(const CameraFrame& frame, const SentRegion& region) {
+  std::vector<std::uint16_t> pixels;
+  pixels.reserve(static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height));
+  for (int y = region.offset_y; y < region.offset_y + region.height; ++y) {
+    const auto row = frame.pixels.begin() + std::ptrdiff_t{y} * frame.width + region.offset_x;
+    pixels.insert(pixels.end(), row, row + region.width);
   }
-  return bytes;
+  return packed_bytes(*sent_format(region.pixel_format), pixels);
 }
 
 }  // namespace
@@ -56,15 +59,16 @@ std::uint32_t GvspStream::Block::last_packet() const {
   return static_cast<std::uint32_t>((data.size() + payload_size - 1) / payload_size) + 1;
 }
 
-void GvspStream::add(const CameraFrame& frame, std::size_t packet_size, const sockaddr_in& receiver) {
+void GvspStream::add(const CameraFrame& frame, const SentRegion& region, std::size_t packet_size,
+                     const sockaddr_in& receiver) {
   constexpr std::uint64_t kBlockIds = 65535;  // 0 is no block
   while (blocks_.size() >= kKept) blocks_.pop_front();
   blocks_.push_back({.id = static_cast<std::uint16_t>((frame.frame_id - 1) % kBlockIds + 1),
                      .payload_size = packet_size - kHeaders,
                      .receiver = receiver,
-                     .leader = leader_of(frame),
-                     .data = bytes_of(frame),
-                     .trailer = trailer_of(frame)});
+                     .leader = leader_of(frame, region),
+                     .data = bytes_of(frame, region),
+                     .trailer = trailer_of(region)});
 }
 
 void GvspStream::send_packet(int socket, const Block& block, std::uint32_t packet, bool is_resent) {

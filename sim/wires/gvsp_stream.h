@@ -12,12 +12,22 @@
 
 namespace gonio::sim {
 
+/// What of a frame is sent, and how; inside of it.
+struct SentRegion {
+  int width = 0;
+  int height = 0;
+  int offset_x = 0;
+  int offset_y = 0;
+  std::uint32_t pixel_format = 0;  ///< of sent_formats()
+};
+
 /// Frames on their way to one receiver as GVSP packets (GigE Vision 2.0, section 24): paced, so that a small receive
 /// buffer does not overflow, and kept for a while to be sent again. Threads: owned by one.
 class GvspStream {
  public:
-  /// `packet_size` counts IP, UDP and GVSP headers. The frame's id, modulo 65535, is its block id.
-  void add(const CameraFrame& frame, std::size_t packet_size, const sockaddr_in& receiver);
+  /// `packet_size` counts IP, UDP and GVSP headers. The frame's id, modulo 65535, is its block id. The region's pixels
+  /// are sent, in this format.
+  void add(const CameraFrame& frame, const SentRegion& region, std::size_t packet_size, const sockaddr_in& receiver);
   /// Packets that were lost on the way. Unknown frames are ignored.
   void resend(int socket, std::uint16_t block_id, std::uint32_t first, std::uint32_t last);
 

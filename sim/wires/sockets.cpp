@@ -69,6 +69,17 @@ Result<FileDescriptor> bind_udp(const std::string& address, std::uint16_t port) 
   return bound(SOCK_DGRAM, address, port);
 }
 
+Result<FileDescriptor> hear_broadcasts(std::uint16_t port) {
+  const auto to = inet_address("255.255.255.255", port);
+  if (!to) return failure(to.error());
+  FileDescriptor made(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const int on = 1;
+  setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (::bind(made.get(), reinterpret_cast<const sockaddr*>(&*to), sizeof *to) != 0)
+    return failure(socket_error(fmt::format("hear broadcasts to port {}", port)));
+  return made;
+}
+
 Result<FileDescriptor> listen_unix(const std::string& path) {
   const std::string tried = fmt::format("listen on {}", path);
   sockaddr_un address{};

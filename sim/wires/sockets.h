@@ -12,6 +12,8 @@ namespace gonio::sim {
 [[nodiscard]] Result<FileDescriptor> listen_tcp(const std::string& address, std::uint16_t port);
 /// A bound UDP socket, not blocking. Errors: PortBusy, InvalidInput (not an IPv4 address of this machine).
 [[nodiscard]] Result<FileDescriptor> bind_udp(const std::string& address, std::uint16_t port);
+/// Datagrams that were sent to all; any number of sockets may hear them. Errors: PortBusy, Internal.
+[[nodiscard]] Result<FileDescriptor> hear_broadcasts(std::uint16_t port);
 /// A listening unix socket; a file left behind by a dead program is replaced. Errors: PortBusy, Internal.
 [[nodiscard]] Result<FileDescriptor> listen_unix(const std::string& path);
 [[nodiscard]] std::uint16_t port_of(const FileDescriptor& socket);

@@ -32,7 +32,7 @@ calibration::InstrumentModel ShortScan::stated_model(const sim::Scene& scene) co
   const sim::ToldSpec& told = scene.told;
   return {.detector = {.electrons_per_dn = d.electrons_per_dn,
                        .read_noise_dn = std::sqrt(d.read_noise_dn * d.read_noise_dn + kRounding),
-                       .full_scale_dn = sim::kFullScaleDn,
+                       .full_scale_dn = d.full_scale_dn(),
                        .exposure_offset_s = {.value = told.exposure_offset_s,
                                              .u = std::hypot(plan_.u_exposure_offset_s, told.u_exposure_offset_s)},
                        .u_linearity = told.u_linearity.value_or(d.u_linearity),
@@ -112,7 +112,7 @@ double ShortScan::chosen_exposure_s(const sim::ReadingLevel& instrument, sim::Re
   if (probe.region.saturated > 0) return rungs.front();
   const double rate = std::max(0.1, probe.region.mean - detector.offset_dn) / probe_s;
   const auto above = std::ranges::find_if(
-      rungs, [&](double t) { return detector.offset_dn + rate * t > kMostOfFullScale * sim::kFullScaleDn; });
+      rungs, [&](double t) { return detector.offset_dn + rate * t > kMostOfFullScale * detector.full_scale_dn(); });
   return above == rungs.begin() ? rungs.front() : *(above - 1);
 }
 

@@ -12,6 +12,7 @@
 
 #include "drivers/genicam_camera/genicam_camera.h"
 #include "drivers/links/aravis_camera_link.h"
+#include "drivers/links/pixel_unpacking.h"
 #include "sim/scene/read_scene.h"
 #include "sim/wires/gige_camera_server.h"
 
@@ -21,10 +22,14 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-sim::Scene scene() {
+sim::Scene scene(const std::string& pixel_format = "Mono12", bool has_temperature = true) {
   auto read = sim::read_scene(GONIO_SCENE_DIR "/lambertian.toml");
   EXPECT_TRUE(read) << describe(read.error());
-  return std::move(*read);
+  sim::Scene scene = std::move(*read);
+  scene.detector.pixel_format = pixel_format;
+  scene.detector.bits = pixel_format_of_name(pixel_format)->significant_bits;
+  scene.detector.has_temperature = has_temperature;
+  return scene;
 }
 
 std::string own_address() {
@@ -134,6 +139,169 @@ TEST_F(AravisCameraWire, SaysThatAnotherControllerHoldsTheCamera) {
   ASSERT_FALSE(opened.has_value());
   EXPECT_EQ(opened.error().code, ErrorCode::ControlLost);
   EXPECT_THAT(opened.error().seen, HasSubstr("another controller"));
+}
+
+TEST_F(AravisCameraWire, ReadsARegionOfTheSensor) {
+  serve();
+  AravisCameraLink link({.address = address});
+  GenicamCameraConfig region = config();
+  region.format.width = 20;
+  region.format.height = 12;
+  region.format.offset_x = 22;
+  region.format.offset_y = 26;
+  GenicamCamera camera(link, region, clock);
+
+  const auto frame = take(camera);
+  const auto format = link.format();
+
+  ASSERT_TRUE(frame) << describe(frame.error());
+  EXPECT_EQ(frame->width, 20);
+  EXPECT_EQ(frame->height, 12);
+  EXPECT_EQ(frame->pixels.size(), 240U);
+  ASSERT_TRUE(format);
+  EXPECT_EQ(*format, region.format);
+}
+
+TEST_F(AravisCameraWire, RefusesARegionThatReachesBeyondTheSensor) {
+  serve();
+  AravisCameraLink link({.address = address});
+  GenicamCameraConfig region = config();
+  region.format.offset_x = 1;
+  GenicamCamera camera(link, region, clock);
+
+  const auto opened = camera.ensure_open();
+
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, ErrorCode::DeviceRefused);
+  EXPECT_THAT(opened.error().tried, HasSubstr("from (1, 0)"));
+}
+
+// The camera's clock ticks every 8 ns, its zero is this machine's: a frame's time lies between trigger and arrival.
+TEST_F(AravisCameraWire, TurnsTheCamerasTicksIntoNanoseconds) {
+  serve();
+  AravisCameraLink link({.address = address});
+  GenicamCamera camera(link, config(), clock);
+  ASSERT_TRUE(camera.ensure_open());
+  const auto before = static_cast<std::uint64_t>(clock.now().time_since_epoch().count());
+
+  const auto frame = take(camera);
+
+  ASSERT_TRUE(frame) << describe(frame.error());
+  EXPECT_GE(frame->camera_time_ns, before);
+  EXPECT_LE(frame->camera_time_ns, static_cast<std::uint64_t>(frame->arrived.time_since_epoch().count()));
+  EXPECT_EQ(frame->camera_time_ns % 8, 0U);
+}
+
+TEST_F(AravisCameraWire, ReadsTheTemperatureOfACameraThatHasOne) {
+  serve();
+  AravisCameraLink link({.address = address});
+  GenicamCamera camera(link, config(), clock);
+
+  const auto frame = take(camera);
+
+  ASSERT_TRUE(frame) << describe(frame.error());
+  EXPECT_EQ(frame->temperature_c, in_celsius(instrument.scene().environment.detector));
+}
+
+/// One simulated camera of another make.
+class OtherCameraWire : public testing::Test {
+ protected:
+  static Result<Frame> frame_of(const std::string& pixel_format, bool has_temperature) {
+    SystemClock clock;
+    sim::LiveInstrument instrument{scene(pixel_format, has_temperature), {}, clock};
+    const auto server = sim::GigeCameraServer::start(instrument, own_address());
+    if (!server) return failure(server.error());
+    AravisCameraLink link({.address = own_address()});
+    GenicamCamera camera(
+        link,
+        {.serial = instrument.scene().detector.serial,
+         .format = {.width = 64, .height = 64, .pixel_format = pixel_format, .packet_size_bytes = 1400},
+         .settings = {.exposure = 2ms, .gain_db = 0.0}},
+        clock);
+    if (auto triggered = camera.trigger(); !triggered) return failure(triggered.error());
+    for (;;) {
+      auto collected = camera.collect(100ms);
+      if (!collected) return failure(collected.error());
+      if (*collected) return std::move(**collected);
+    }
+  }
+};
+
+TEST_F(OtherCameraWire, HasNoTemperatureWhereTheCameraHasNoSensor) {
+  const auto frame = frame_of("Mono12", false);
+
+  ASSERT_TRUE(frame) << describe(frame.error());
+  EXPECT_EQ(frame->temperature_c, std::nullopt);
+}
+
+// The same dark frame (one seed, one exposure number) must come out of every format that holds its bits.
+TEST_F(OtherCameraWire, ReadsTheSamePixelsFromEveryPackingOfTheirBits) {
+  for (const std::vector<std::string>& alike :
+       {std::vector<std::string>{"Mono10", "Mono10Packed", "Mono10p"}, {"Mono12", "Mono12Packed", "Mono12p"}}) {
+    const auto plain = frame_of(alike[0], true);
+    ASSERT_TRUE(plain) << describe(plain.error());
+    for (const std::string& packed : {alike[1], alike[2]}) {
+      const auto frame = frame_of(packed, true);
+
+      ASSERT_TRUE(frame) << packed << ": " << describe(frame.error());
+      EXPECT_EQ(frame->significant_bits, plain->significant_bits);
+      EXPECT_EQ(frame->pixels, plain->pixels) << packed;
+    }
+  }
+}
+
+TEST_F(OtherCameraWire, ReadsEightFourteenAndSixteenBits) {
+  for (const std::string name : {"Mono8", "Mono14", "Mono16"}) {
+    const auto frame = frame_of(name, true);
+
+    ASSERT_TRUE(frame) << name << ": " << describe(frame.error());
+    const double mean = std::accumulate(frame->pixels.begin(), frame->pixels.end(), 0.0) / (64.0 * 64.0);
+    EXPECT_NEAR(mean, scene().detector.offset_dn, 2.0) << name;
+  }
+}
+
+/// Two cameras with serial numbers of this process' own: others may answer the same broadcast.
+TEST(CameraSearch, FindsTheOneWithTheSerialNumberAndOpensNoOther) {
+  const std::string serial = "S" + std::to_string(getpid());
+  SystemClock clock;
+  sim::Scene wanted = scene();
+  wanted.detector.serial = serial;
+  sim::Scene other = scene();
+  other.detector.serial = serial + "B";
+  sim::LiveInstrument first{wanted, {}, clock};
+  sim::LiveInstrument second{other, {}, clock};
+  const std::string at = own_address();
+  const std::string beside = at.substr(0, 4) + std::to_string(128 + getpid() % 100) + at.substr(at.find('.', 4));
+  const auto server = sim::GigeCameraServer::start(first, at);
+  const auto server_beside = sim::GigeCameraServer::start(second, beside);
+  ASSERT_TRUE(server && server_beside);
+  AravisCameraLink link({.address = "", .serial = serial});
+  AravisCameraLink holder({.address = beside, .control_wait = 0s});
+
+  const auto opened = link.open();
+  const auto held = holder.open();
+
+  ASSERT_TRUE(opened) << describe(opened.error());
+  EXPECT_EQ(opened->serial, serial);
+  EXPECT_TRUE(held) << "the other camera is free: " << describe(held.error());
+}
+
+TEST(CameraSearch, SaysWhichCamerasItSawInstead) {
+  const std::string serial = "T" + std::to_string(getpid());
+  SystemClock clock;
+  sim::Scene there = scene();
+  there.detector.serial = serial;
+  sim::LiveInstrument instrument{there, {}, clock};
+  const auto server = sim::GigeCameraServer::start(instrument, own_address());
+  ASSERT_TRUE(server);
+  AravisCameraLink link({.address = "", .serial = "nobody"});
+
+  const auto opened = link.open();
+
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, ErrorCode::Unreachable);
+  EXPECT_THAT(opened.error().tried, HasSubstr("nobody"));
+  EXPECT_THAT(opened.error().seen, HasSubstr(serial));
 }
 
 /// Takes control as a controller does that is killed right after: one WRITEREG of the control channel privilege, and

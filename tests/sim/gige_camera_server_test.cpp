@@ -195,7 +195,8 @@ TEST_F(GigeCameraServerTest, RefusesWithTheStatusOfTheSpecification) {
   EXPECT_EQ(get16(controller.ask(0x0080, u32(0x0002)), 0), 0x8005) << "odd address";
   EXPECT_EQ(controller.write(0x0024, 1), 0x8004) << "read only";
   EXPECT_EQ(controller.write(address::kPixelFormat, 0x01080001), 0x8002) << "Mono8";
-  EXPECT_EQ(controller.write(address::kWidth, 32), 0x8002);
+  EXPECT_EQ(controller.write(address::kWidth, 65), 0x8002) << "wider than the sensor";
+  EXPECT_EQ(controller.write(address::kOffsetX, 1), 0x8002) << "beyond its edge";
   EXPECT_EQ(get16(controller.ask(0x00F0, {}), 0), 0x8001) << "no such command";
 }
 

@@ -1,11 +1,23 @@
 #include "tests/support/in_process_camera_link.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace gonio::test {
 namespace {
 
 using Parts = sim::LiveInstrument::Parts;
+
+std::vector<std::uint16_t> region_of(const sim::CameraFrame& frame, const drivers::CameraFormat& format) {
+  std::vector<std::uint16_t> pixels;
+  for (int y = format.offset_y; y < format.offset_y + format.height; ++y) {
+    const auto row = frame.pixels.begin() + std::ptrdiff_t{y} * frame.width + format.offset_x;
+    pixels.insert(pixels.end(), row, row + format.width);
+  }
+  return pixels;
+}
 
 }  // namespace
 
@@ -30,9 +42,10 @@ Result<void> InProcessCameraLink::set_format(const drivers::CameraFormat& format
 
 Result<drivers::CameraFormat> InProcessCameraLink::format() {
   GONIO_TRY(ready());
+  const sim::DetectorSpec& sensor = instrument_.scene().detector;
   drivers::CameraFormat format = format_;
-  format.width = instrument_.scene().detector.width_px;
-  format.height = instrument_.scene().detector.height_px;
+  format.width = std::min(format.width, sensor.width_px - format.offset_x);
+  format.height = std::min(format.height, sensor.height_px - format.offset_y);
   return format;
 }
 
@@ -53,7 +66,10 @@ Result<drivers::ExposureSettings> InProcessCameraLink::exposure() {
 
 Result<std::optional<double>> InProcessCameraLink::temperature_c() {
   GONIO_TRY(ready());
-  return instrument_.with([](Parts& parts) { return std::optional(in_celsius(parts.camera.temperature(parts.now))); });
+  return instrument_.with([](Parts& parts) {
+    const bool has_one = parts.instrument.scene().detector.has_temperature;
+    return has_one ? std::optional(in_celsius(parts.camera.temperature(parts.now))) : std::nullopt;
+  });
 }
 
 Result<void> InProcessCameraLink::start() {
@@ -80,9 +96,9 @@ Result<std::optional<drivers::CameraFrame>> InProcessCameraLink::pop(Duration) {
   return std::optional<drivers::CameraFrame>(drivers::CameraFrame{
       .is_complete = true,
       .trouble = {},
-      .width = ready_frame->width,
-      .height = ready_frame->height,
-      .pixels = std::move(ready_frame->pixels),
+      .width = format_.width,
+      .height = format_.height,
+      .pixels = region_of(*ready_frame, format_),
       .frame_id = ready_frame->frame_id,
       .camera_time_ns = static_cast<std::uint64_t>(ready_frame->exposure_end.time_since_epoch().count())});
 }
