@@ -18,7 +18,7 @@ namespace {
 
 using calibration::MapFile;
 
-constexpr double kAnHour = 3600.0;
+constexpr double kLongestTime_s = 3600.0;
 constexpr std::array<std::string_view, 9> kPixelFormats{"Mono8",        "Mono10",       "Mono12",  "Mono14", "Mono16",
                                                         "Mono10Packed", "Mono12Packed", "Mono10p", "Mono12p"};
 
@@ -110,11 +110,11 @@ DetectorConfig read_detector(TomlReader& table) {
   detector.pixel_format = kPixelFormats[table.choice("pixel_format", kPixelFormats)];
   if (detector.link == CameraLinkKind::Gige)
     detector.packet_size_bytes = static_cast<int>(table.integer("packet_size_bytes", 576, 9000));
-  const NumberRange some_time{.least = 1e-6, .most = kAnHour, .unit = "s"};
+  const NumberRange some_time{.least = 1e-6, .most = kLongestTime_s, .unit = "s"};
   const double shortest = table.number("shortest_exposure_s", some_time);
   detector.shortest_exposure = seconds(shortest);
   detector.longest_exposure =
-      seconds(table.number("longest_exposure_s", {.least = shortest, .most = kAnHour, .unit = "s"}));
+      seconds(table.number("longest_exposure_s", {.least = shortest, .most = kLongestTime_s, .unit = "s"}));
   detector.gain_db = table.number("gain_db", {.least = 0.0, .most = 60.0, .unit = "dB"});
   detector.frames_at_most = static_cast<int>(table.integer("frames_at_most", 1, 100000));
   detector.aperture = read_aperture(table.table("aperture"), detector);

@@ -58,5 +58,18 @@ TEST_F(OldStore, OfVersion1KeepsItsScanWhichChoosesItsExposures) {
   EXPECT_EQ(points->size(), 2U);
 }
 
+TEST_F(OldStore, OfVersion1GainsReductionsAndTemperaturesThatMayBeUnknown) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  SQLite::Database file(path_, SQLite::OPEN_READONLY);
+
+  EXPECT_EQ(file.execAndGet("SELECT count(*) FROM frame_reduction").getInt(), 0);
+  EXPECT_EQ(file.execAndGet("SELECT count(*) FROM reading WHERE (camera_temperature_c = 0) = camera_temperature_known")
+                .getInt(),
+            0);
+}
+
 }  // namespace
 }  // namespace gonio::daemon
