@@ -94,11 +94,11 @@ std::string genicam_description(const CameraIdentity& identity) {
   xml.constant("SensorHeight", height);
   xml.constant("WidthMax", width);
   xml.constant("HeightMax", height);
-  constexpr std::uint32_t kSmallestSide = 4;
-  xml.integer("Width", address::kWidth, kSmallestSide, width);
-  xml.integer("Height", address::kHeight, kSmallestSide, height);
-  xml.integer("OffsetX", address::kOffsetX, 0, width - kSmallestSide);
-  xml.integer("OffsetY", address::kOffsetY, 0, height - kSmallestSide);
+  constexpr std::uint32_t kFewestPixels = 4;
+  xml.integer("Width", address::kWidth, kFewestPixels, width);
+  xml.integer("Height", address::kHeight, kFewestPixels, height);
+  xml.integer("OffsetX", address::kOffsetX, 0, width - kFewestPixels);
+  xml.integer("OffsetY", address::kOffsetY, 0, height - kFewestPixels);
   xml.integer("PayloadSize", address::kPayloadSize, 1, 2 * width * height);
   std::vector<Entry> formats;
   for (const SentFormat& format : sent_formats()) {
