@@ -95,7 +95,8 @@ class SimulatedInstrument : public testing::Test {
   std::vector<StageAnswer> stage_answers;
   std::vector<DetectorActor::Answer> detector_answers;
   StageActor stage_actor{stage, instrument.stage, [this](StageAnswer a) { stage_answers.push_back(std::move(a)); }};
-  DetectorActor detector_actor{camera, {instrument.detector.aperture, nullptr, instrument.model.detector},
+  DetectorActor detector_actor{camera,
+                               {instrument.detector.aperture, nullptr, instrument.model.detector},
                                [this](DetectorActor::Answer a) { detector_answers.push_back(std::move(a)); }};
   DiscreteExecutor executor{clock};
 };
