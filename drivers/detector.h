@@ -28,9 +28,9 @@ struct Frame {
   int height = 0;
   int significant_bits = 12;  ///< full scale is 2^bits - 1
   std::vector<std::uint16_t> pixels;
-  std::uint64_t frame_id = 0;        ///< the camera's own, grows by one
-  std::uint64_t camera_time_ns = 0;  ///< the camera's own clock
-  ExposureSettings settings;         ///< read back from the camera
+  std::uint64_t frame_id = 0;           ///< the camera's own, grows by one
+  std::uint64_t camera_time_ns = 0;     ///< the camera's own clock
+  ExposureSettings settings;            ///< read back from the camera
   std::optional<double> temperature_c;  ///< nothing: the camera has no sensor
   Instant arrived{};
 };
