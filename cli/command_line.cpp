@@ -37,6 +37,7 @@ class CommandLine {
     CLI::App& events = *leaf(app_, "events", "what was committed, one event a line", Verb::Events);
     events.add_flag("-f,--follow", wanted.follow, "wait for more");
     events.add_option("--after", wanted.after, "begin after this event's number")->check(CLI::NonNegativeNumber);
+    add_replay();
     CLI::App& reference = group("reference", "reference standards");
     leaf(reference, "list", "the standards this daemon knows", Verb::ReferenceList);
   }
@@ -106,6 +107,19 @@ class CommandLine {
     scan_leaf(scan, "finish", "end early, keep the data", Verb::ScanFinish);
     scan_leaf(scan, "abort", "end at once", Verb::ScanAbort).add_option("--reason", wanted_.reason, "for the record");
     scan_leaf(scan, "skip", "give up the item in hand", Verb::ScanSkip);
+    CLI::App& compare =
+        scan_leaf(scan, "compare", "two scans of one plan, point by point in units of U", Verb::ScanCompare);
+    compare.add_option("other", wanted_.other_scan, "the other scan's number")->required()->check(CLI::PositiveNumber);
+    scan_leaf(scan, "repeat", "run a scan's plan again, and compare", Verb::ScanRepeat);
+  }
+
+  void add_replay() {
+    CLI::App& replay =
+        *leaf(app_, "replay", "run a recorded tape without devices, on the goniod beside this", Verb::Replay);
+    replay.add_option("tape", wanted_.replay.tape, "made by goniod --record")->required();
+    replay.add_option("--store", wanted_.replay.store, "the database that it makes (TAPE.sqlite)");
+    replay.add_option("--against", wanted_.replay.against, "compare with this database, times aside");
+    replay.add_option("--instrument", wanted_.replay.instrument, "another instrument.toml than the tape's");
   }
 
   void add_data() {

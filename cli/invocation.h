@@ -7,6 +7,7 @@
 
 #include "base/result.h"
 #include "cli/output.h"
+#include "cli/replay_program.h"
 #include "protocol/api/requests.h"
 
 namespace gonio::cli {
@@ -28,6 +29,9 @@ enum class Verb : std::uint8_t {
   ScanFinish,
   ScanAbort,
   ScanSkip,
+  ScanCompare,
+  ScanRepeat,
+  Replay,
   DataExport,
   ReferenceList,
   Instrument,
@@ -41,6 +45,8 @@ struct Invocation {
   std::string connect;
   Format format = Format::Table;
   std::int64_t scan = 0;
+  std::int64_t other_scan = 0;  ///< to compare with
+  ReplayLine replay;
   std::string file;  ///< a plan, or where an export goes ("-": standard output)
   bool watch = false;
   bool now = false;        ///< pause

@@ -11,6 +11,7 @@
 #include "cli/doctor/findings_view.h"
 #include "cli/files.h"
 #include "cli/invocation.h"
+#include "cli/scan_comparison.h"
 #include "cli/scan_watch.h"
 #include "cli/views.h"
 
@@ -69,6 +70,12 @@ class Runner {
         return command(RouteId::ScanAbort, api::to_json(api::AbortRequest{wanted_.reason}));
       case Verb::ScanSkip:
         return command(RouteId::ScanSkip, "{}");
+      case Verb::ScanCompare:
+        return compare_scans(wanted_.scan, wanted_.other_scan);
+      case Verb::ScanRepeat:
+        return repeat_scan();
+      case Verb::Replay:
+        return failure(become_replay(wanted_.replay));
       case Verb::DataExport:
         return export_data();
       case Verb::ReferenceList:
@@ -159,6 +166,48 @@ class Runner {
     if (!ended) return failure(ended.error());
     print_facts(world_.out, view(*ended));
     return ended->state == "done" || ended->state == "finished-early" ? 0 : 1;
+  }
+
+  Result<std::vector<api::BrdfReport>> values_of(std::int64_t scan) {
+    std::vector<api::BrdfReport> values;
+    std::string query;
+    for (;;) {
+      Result<Told<api::BrdfPage>> page = client_.get<api::BrdfPage>(RouteId::ScanBrdf, scan, query);
+      if (!page) return failure(page.error());
+      values.insert(values.end(), page->value.values.begin(), page->value.values.end());
+      if (!page->value.next_after) return values;
+      query = "after=" + std::to_string(*page->value.next_after);
+    }
+  }
+
+  // Exit code 1: they do not agree, or have no point in common.
+  Result<int> compare_scans(std::int64_t a, std::int64_t b) {
+    const auto of_a = values_of(a);
+    if (!of_a) return failure(of_a.error());
+    const auto of_b = values_of(b);
+    if (!of_b) return failure(of_b.error());
+    const ScanComparison comparison = compare_values(*of_a, *of_b);
+    if (wanted_.format == Format::Csv) {
+      print_csv(world_.out, view(comparison));
+    } else {
+      print_table(world_.out, view(comparison));
+    }
+    world_.err << "scan " << a << " and scan " << b << ": " << summary_of(comparison) << '\n';
+    return !comparison.points.empty() && comparison.do_agree() ? 0 : 1;
+  }
+
+  // The plan is sent as it was stored, under a key of its own.
+  Result<int> repeat_scan() {
+    const auto first = client_.get<api::ScanReport>(RouteId::ScanOne, wanted_.scan);
+    if (!first) return failure(first.error());
+    const api::PlanSubmission again{
+        .plan = first->value.plan.value_or(""), .plan_file = first->value.plan_file.value_or(""), .parts = {}};
+    const auto submitted =
+        client_.post<api::CommandReport>(RouteId::ScanSubmit, 0, api::to_json(again), {{"Idempotency-Key", new_key()}});
+    if (!submitted) return failure(submitted.error());
+    const Result<int> watched = watch(submitted->value.scan);
+    if (!watched || *watched != 0) return watched;
+    return compare_scans(wanted_.scan, submitted->value.scan);
   }
 
   Result<int> export_data() {

@@ -241,6 +241,10 @@ Result<api::ScanReport> DaemonService::scan(std::int64_t scan) {
   const Instant now = parts_.clock.now();
   api::ScanReport report = scan_report(*info, now);
   add_progress(report, parts_.engine.status(), now);
+  const Result<ScanTexts> texts = ask_store([scan](StoreReader& store) { return store.texts(scan); });
+  if (!texts) return failure(texts.error());
+  report.plan = texts->plan;
+  report.plan_file = texts->plan_file;
   if (!is_over(info->state)) return report;
   const Result<BrdfInfo> brdf = ask_store([scan](StoreReader& store) { return brdf_of(store, scan); });
   if (!brdf) return report;  // the scan is there all the same; GET brdf says why it has no values

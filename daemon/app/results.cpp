@@ -42,7 +42,19 @@ std::string status_without_value(const PointInfo& info) {
   return both ? "refused" : "unmeasured";
 }
 
-api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row) {
+// Each scan visits the dark anew; every other shared part is the instrument's or the standard's.
+double own_u(const BrdfRow& row, const std::vector<std::string>& component_names) {
+  double variance = row.u_random_per_sr * row.u_random_per_sr;
+  for (std::size_t i = 0; i + 1 < row.sensitivities_per_sr.size(); i += 2) {
+    const auto component = static_cast<std::size_t>(row.sensitivities_per_sr[i]);
+    if (component < component_names.size() && component_names[component].starts_with("dark ")) {
+      variance += row.sensitivities_per_sr[i + 1] * row.sensitivities_per_sr[i + 1];
+    }
+  }
+  return std::sqrt(variance);
+}
+
+api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row, const std::vector<std::string>& component_names) {
   api::BrdfReport report;
   report.point = info.point.index;
   report.wavelength_nm = in_nanometres(info.point.wavelength);
@@ -55,6 +67,7 @@ api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row) {
   report.brdf_per_sr = row->value_per_sr;
   report.u_random_per_sr = row->u_random_per_sr;
   report.u_shared_per_sr = budget.u_shared_per_sr;
+  report.u_own_per_sr = own_u(*row, component_names);
   report.u_per_sr = budget.u_per_sr;
   report.k = budget.k;
   report.expanded_u_per_sr = budget.expanded_per_sr;
@@ -80,7 +93,7 @@ std::vector<api::BrdfReport> join(const std::vector<PointInfo>& points, const Br
   std::vector<api::BrdfReport> reports;
   for (const PointInfo& point : points) {
     const auto row = rows.find(point.point.index);
-    reports.push_back(report_of(point, row == rows.end() ? nullptr : row->second));
+    reports.push_back(report_of(point, row == rows.end() ? nullptr : row->second, brdf.component_names));
   }
   return reports;
 }

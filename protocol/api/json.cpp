@@ -71,7 +71,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 reference, instrument_sha256, submitted_utc, changed_utc, points,
                                                 merged, blocked, items, accepted, skipped, attempts, visits, spent,
                                                 seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
-                                                median_relative_u, worst_relative_u)
+                                                median_relative_u, worst_relative_u, plan, plan_file)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
                                                 stage_stopped, active, queued, stage, stage_error, detector_error,
                                                 store_error, last_event)
@@ -81,7 +81,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanReport, name, sample, refere
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointReport, index, rank, theta_i_deg, phi_i_deg, theta_r_deg,
                                                 phi_r_deg, wavelength_nm, blocked, sample, reference, attempts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfReport, point, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,
-                                                wavelength_nm, brdf_per_sr, u_random_per_sr, u_shared_per_sr, u_per_sr,
+                                                wavelength_nm, brdf_per_sr, u_random_per_sr, u_shared_per_sr, u_own_per_sr, u_per_sr,
                                                 k, expanded_u_per_sr, status, flags)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointPage, points, next_after)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfPage, values, next_after)

@@ -89,6 +89,8 @@ struct ScanReport {
   std::optional<std::int64_t> brdf_values;  ///< once computed
   std::optional<double> median_relative_u;  ///< of the expanded uncertainties U (k = 2 or by dof) over the value
   std::optional<double> worst_relative_u;
+  std::optional<std::string> plan;       ///< as it was sent; of one scan asked for, not in lists
+  std::optional<std::string> plan_file;  ///< the user's name for it; likewise
 };
 
 struct StatusReport {
@@ -153,6 +155,7 @@ struct BrdfReport {
   std::optional<double> brdf_per_sr;
   std::optional<double> u_random_per_sr;  ///< standard uncertainties
   std::optional<double> u_shared_per_sr;
+  std::optional<double> u_own_per_sr;  ///< of what this scan drew anew: random, and its visits of the dark
   std::optional<double> u_per_sr;
   std::optional<double> k;  ///< coverage factor of 95.45 %, by the degrees of freedom
   std::optional<double> expanded_u_per_sr;

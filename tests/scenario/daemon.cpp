@@ -26,8 +26,11 @@ int port_of(const std::string& url) {
 
 std::vector<std::string> goniod_arguments(const DaemonFiles& files, const std::string& listen,
                                           const std::string& ready_file) {
-  return {kGoniod,     "--instrument", files.instrument, "--references", files.references, "--store",
-          files.store, "--listen",     listen,           "--ready-file", ready_file};
+  std::vector<std::string> line{kGoniod,          "--instrument", files.instrument, "--references",
+                                files.references, "--store",      files.store,      "--listen",
+                                listen,           "--ready-file", ready_file};
+  if (!files.tape.empty()) line.insert(line.end(), {"--record", files.tape});
+  return line;
 }
 
 Daemon::Daemon(const DaemonFiles& files, const std::string& folder)

@@ -12,6 +12,7 @@ struct DaemonFiles {
   std::string instrument;
   std::string references;
   std::string store;
+  std::string tape{};  ///< to be recorded; empty: none
 };
 
 /// The arguments that goniod is started with. `listen` is an address with port, 0 for any that is free.
