@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <memory>
-#include <string_view>
-#include <vector>
 
+#include "bench/wires/contest.h"
 #include "drivers/links/libusb_usbtmc_link.h"
 #include "drivers/radiometer/scpi_radiometer.h"
 #include "protocol/usbtmc/message.h"
@@ -23,9 +21,8 @@ namespace {
 using namespace gonio;
 using sim::UsbtmcFunction;
 
-constexpr int kSamples = 500;  // of a round
+constexpr int kSamples = 200;  // of a stretch
 constexpr unsigned kTimeoutMs = 10000;
-constexpr double kLeastRatio = 0.9;
 
 sim::Scene scene() {
   sim::Scene scene;
@@ -43,13 +40,6 @@ sim::RadiometerSpec monitor() {
   return spec;
 }
 
-template <class Run>
-double per_second(Run run) {
-  const auto start = std::chrono::steady_clock::now();
-  if (!run()) return 0.0;
-  return kSamples / std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 double driver_rate() {
   const SystemClock clock;
   drivers::LibusbUsbtmcLink link(
@@ -60,11 +50,12 @@ double driver_rate() {
                                   .range_settle = Duration::zero()},
                                  clock);
   if (!driver.ensure_open()) return 0.0;
-  return per_second([&] {
-    if (!driver.trigger()) return false;
-    const auto taken = driver.collect(std::chrono::minutes(5));
-    return taken && taken->has_value();
-  });
+  // A reading is so many samples, with a question for the range before and behind them.
+  return kSamples * bench::per_second(1, [&] {
+           if (!driver.trigger()) return false;
+           const auto taken = driver.collect(std::chrono::minutes(5));
+           return taken && taken->has_value();
+         });
 }
 
 // One sample by hand; false when a transfer failed.
@@ -92,17 +83,7 @@ double bare_rate(bool with_status) {
       libusb_open_device_with_vid_pid(made, UsbtmcFunction::kVendor, UsbtmcFunction::kProduct), libusb_close);
   if (handle == nullptr || libusb_claim_interface(handle.get(), 0) != 0) return 0.0;
   usbtmc::TagSequence tags;
-  return per_second([&] {
-    for (int k = 0; k < kSamples; ++k) {
-      if (!bare_sample(handle.get(), tags, with_status)) return false;
-    }
-    return true;
-  });
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
+  return bench::per_second(kSamples, [&] { return bare_sample(handle.get(), tags, with_status); });
 }
 
 }  // namespace
@@ -114,17 +95,13 @@ int main(int argc, char** argv) {
   sim::LiveRadiometer meter(instrument, monitor(), false);
   sim::UsbBus bus(meter);
   if (!bus.plug()) return EXIT_FAILURE;
-  std::vector<double> ours, same, least, ratios;
-  for (int k = 0; k < rounds; ++k) {
-    same.push_back(bare_rate(true));
-    ours.push_back(driver_rate());
-    least.push_back(bare_rate(false));
-    ratios.push_back(ours.back() / same.back());
-  }
-  fmt::print("samples a second of a radiometer, medians of {} rounds of {} in turns\n", rounds, kSamples);
-  fmt::print("{:<52} {:>8.0f}\n", "driver: READ?, status byte", median(ours));
-  fmt::print("{:<52} {:>8.0f}\n", "bare libusb, the same four transfers", median(same));
-  fmt::print("{:<52} {:>8.0f}\n", "bare libusb, without the status byte", median(least));
-  fmt::print("{:<52} {:>8.3f}  (at least {})\n", "driver / bare, the same transfers", median(ratios), kLeastRatio);
-  return median(ratios) >= kLeastRatio ? EXIT_SUCCESS : EXIT_FAILURE;
+  bench::print_heading();
+  const bool holds = bench::hold({.what = "radiometer, USBTMC: READ?, status byte (four transfers)",
+                                  .ours = [] { return driver_rate(); },
+                                  .bare = [] { return bare_rate(true); }},
+                                 rounds);
+  // What the status byte costs: a driver without it would not know whose reply it has.
+  const double least = bare_rate(false);
+  fmt::print("{:<58} {:>10} {:>10.0f}\n", "  the same without the status byte", "", least);
+  return holds ? EXIT_SUCCESS : EXIT_FAILURE;
 }

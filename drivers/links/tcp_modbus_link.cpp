@@ -40,9 +40,10 @@ struct TcpModbusLink::Impl {
     is_connected = false;
   }
 
-  // Runs one transaction of the context's with a unit.
-  template <class Call>
-  Result<void> transact(const ModbusUnit& unit, std::string tried, Call call) {
+  // Runs one transaction of the context's with a unit. `tried` says what it was, when it failed: words take longer to
+  // make than a register to read.
+  template <class Tried, class Call>
+  Result<void> transact(const ModbusUnit& unit, Tried tried, Call call) {
     GONIO_TRY(ensure_connected());
     context.select(unit);
     Result<void> done = call(context);
@@ -50,7 +51,7 @@ struct TcpModbusLink::Impl {
     Error& error = done.error();
     if (error.code != ErrorCode::DeviceRefused) close();
     error.device = "stage";
-    error.tried = std::move(tried);
+    error.tried = tried();
     if (error.code == ErrorCode::TimedOut) {
       error.seen = "no complete reply";
       error.limit = fmt::format("{:.0f} ms", in_seconds(config.reply_timeout) * 1e3);
@@ -76,19 +77,23 @@ class TcpModbusLink::Face final : public ModbusLink {
   Face(Impl& impl, const ModbusUnit& unit) : impl_(impl), unit_(unit) {}
 
   Result<void> read_registers(std::uint16_t first, std::span<std::uint16_t> into) override {
-    return impl_.transact(unit_, fmt::format("read {} registers from {}", into.size(), first),
-                          [&](ModbusContext& context) { return context.read_registers(first, into); });
+    return impl_.transact(
+        unit_, [&] { return fmt::format("read {} registers from {}", into.size(), first); },
+        [&](ModbusContext& context) { return context.read_registers(first, into); });
   }
   Result<void> write_registers(std::uint16_t first, std::span<const std::uint16_t> words) override {
-    return impl_.transact(unit_, fmt::format("write {} registers from {}", words.size(), first),
-                          [&](ModbusContext& context) { return context.write_registers(first, words); });
+    return impl_.transact(
+        unit_, [&] { return fmt::format("write {} registers from {}", words.size(), first); },
+        [&](ModbusContext& context) { return context.write_registers(first, words); });
   }
   Result<void> write_and_read(std::uint16_t write_first, std::span<const std::uint16_t> words, std::uint16_t read_first,
                               std::span<std::uint16_t> into) override {
     return impl_.transact(
         unit_,
-        fmt::format("write {} registers from {} and read {} from {}", words.size(), write_first, into.size(),
-                    read_first),
+        [&] {
+          return fmt::format("write {} registers from {} and read {} from {}", words.size(), write_first, into.size(),
+                             read_first);
+        },
         [&](ModbusContext& context) { return context.write_and_read(write_first, words, read_first, into); });
   }
   void resync() override { impl_.close(); }

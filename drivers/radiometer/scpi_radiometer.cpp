@@ -22,6 +22,11 @@ constexpr double kWavelengthTolerance_nm = 0.05;
 constexpr double kRangeTolerance = 0.01;  // relative: meters state 1.1 mW or 1 mW for the same range
 constexpr std::string_view kSample = "READ?";
 
+// What a meter said, which may be nothing.
+std::string said(std::string_view reply) {
+  return fmt::format("\"{}\"", reply);
+}
+
 RadiometerReading reading_of(const std::vector<double>& samples) {
   const auto n = static_cast<double>(samples.size());
   const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / n;
@@ -75,7 +80,7 @@ Result<void> ScpiRadiometer::identify() {
   if (!text) return failure(text.error());
   const auto fields = scpi::split(*text, ',');
   if (!fields || fields->size() < 3) {
-    return failure(error(ErrorCode::BadReply, "ask \"*IDN?\"", *text, "maker, model, serial number, version"));
+    return failure(error(ErrorCode::BadReply, "ask \"*IDN?\"", said(*text), "maker, model, serial number, version"));
   }
   identity_ = {.vendor = (*fields)[0], .model = (*fields)[1], .serial = (*fields)[2]};
   if (identity_.serial == config_.serial) return {};
@@ -136,7 +141,7 @@ Result<double> ScpiRadiometer::query_number(std::string_view text) {
   if (!reply) return failure(reply.error());
   const auto number = scpi::parse_number(*reply);
   if (number && number->kind == scpi::NumberKind::Finite) return number->value;
-  return failure(error(ErrorCode::BadReply, fmt::format("ask \"{}\"", text), *reply, "a number"));
+  return failure(error(ErrorCode::BadReply, fmt::format("ask \"{}\"", text), said(*reply), "a number"));
 }
 
 Result<void> ScpiRadiometer::check_status(std::string_view after) {
@@ -157,7 +162,8 @@ Result<void> ScpiRadiometer::fail_by_error_queue(std::string_view after) {
     const auto reply = session_.query("SYST:ERR?", config_.reply_margin);
     if (!reply) return failure(reply.error());
     const auto entry = scpi::parse_error_entry(*reply);
-    if (!entry) return failure(error(ErrorCode::BadReply, "ask \"SYST:ERR?\"", *reply, "a number and a quoted text"));
+    if (!entry)
+      return failure(error(ErrorCode::BadReply, "ask \"SYST:ERR?\"", said(*reply), "a number and a quoted text"));
     if (entry->code == 0) break;
     if (first.empty()) first = fmt::format("{} {}", entry->code, entry->text);
     ++more;
@@ -207,7 +213,7 @@ Result<bool> ScpiRadiometer::is_zeroed(Duration wait) {
   task_ = Task::None;
   if (!reply) return failure(reply.error());
   GONIO_TRY(check_status("SENS:CORR:COLL:ZERO"));
-  if (**reply != "1") return failure(error(ErrorCode::BadReply, "ask \"*OPC?\"", **reply, "1"));
+  if (**reply != "1") return failure(error(ErrorCode::BadReply, "ask \"*OPC?\"", said(**reply), "1"));
   settled_at_ = clock_.now() + config_.range_settle;
   return true;
 }

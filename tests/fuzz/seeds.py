@@ -4,6 +4,7 @@ keeping lies in corpus/."""
 import pathlib
 import struct
 import sys
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 out = pathlib.Path(sys.argv[1])
@@ -146,3 +147,12 @@ keep("usbtmc_device", "clear", b"\5\0" + bytes([0xA1, 5, 0, 0, 0, 0, 1, 0]) + b"
 for k, text in enumerate((b"*IDN?\n", b"SENS:CORR:WAV 633;:SENS:CORR:WAV?", b"SENS:POW:RANG 1e-3;RANG?", b"CONF:POW;:CONF?",
                           b"SENS:CORR:COLL:ZERO;*OPC?", b"NONSENSE 1,2;SYST:ERR?", b"sense:average:count 4;count?", b"READ?;READ?")):
     keep("usbtmc_device", f"message_{k}", message(text) + message(b"SYST:ERR?"))
+
+# pixels: odd is packed pixels of a tape; even a format's index, then its bytes.
+for k in range(9):
+    keep("pixels", f"format_{k}", bytes([0, k]) + bytes((37 * j + k) % 256 for j in range(31)))
+keep("pixels", "packed", bytes([1, 0, 8]) + zlib.compress(bytes(range(16))))
+
+# tape: odd is payloads in counted pieces (2), even a file as it is.
+keep("tape", "turn", bytes([1]) + struct.pack(">H", 19) + bytes([2, 1, 0]) + bytes(16))
+keep("tape", "file", bytes([0]) + b"GONIOTAP\r\n\x1a\1" + struct.pack("<II", 2, zlib.crc32(b"\6\0")) + b"\6\0")

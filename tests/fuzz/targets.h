@@ -16,6 +16,8 @@ void stage_state(Bytes input);
 void usbtmc_message(Bytes input);
 void scpi_text(Bytes input);
 void radiometer(Bytes input);
+void tape(Bytes input);
+void pixels(Bytes input);
 void frame(Bytes input);
 void instrument_toml(Bytes input);
 void plan_toml(Bytes input);
@@ -39,6 +41,8 @@ inline constexpr std::array kTargets{
     Target{"usbtmc_message", usbtmc_message},
     Target{"scpi_text", scpi_text},
     Target{"radiometer", radiometer},
+    Target{"tape", tape},
+    Target{"pixels", pixels},
     Target{"frame", frame},
     Target{"instrument_toml", instrument_toml},
     Target{"plan_toml", plan_toml},

@@ -89,6 +89,16 @@ TEST_F(ScpiRadiometerTest, RefusesAMeterWithAnotherSerialNumberAndLetsItGo) {
   EXPECT_FALSE(meter.is_open());
 }
 
+TEST_F(ScpiRadiometerTest, SaysThatAMeterSaidNothing) {
+  meter.answers["*IDN?"] = "";
+
+  const auto who = radiometer.ensure_open();
+
+  ASSERT_FALSE(who);
+  EXPECT_EQ(who.error().seen, "\"\"");
+  EXPECT_EQ(who.error().limit, "maker, model, serial number, version");
+}
+
 TEST_F(ScpiRadiometerTest, NamesTheSettingThatWasNotTaken) {
   meter.answers["SENS:POW:RANG?"] = "1.0E-1";
 
