@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "calibration/frame_reduction.h"
+#include "calibration/frame_reducer.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
 
@@ -10,7 +10,7 @@ namespace gonio::fuzz {
 namespace {
 
 using calibration::ApertureMask;
-using calibration::RegionMoments;
+using calibration::FrameReducer;
 
 constexpr std::size_t kLongestSide = 80;
 
@@ -82,13 +82,20 @@ void frame(Bytes input) {
   const std::size_t missing = source.byte() == 0xFF ? source.byte() : 0;
   const auto pixels = pixels_of(source, whole - std::min(whole, missing));
 
-  const auto reduced = calibration::reduce_frame(pixels, width, height, full_scale, mask);
-
-  if (!reduced) {
-    hold_device_error(reduced.error());
+  const auto reducer = FrameReducer::prepare(width, height, full_scale, mask);
+  if (!reducer) {
+    hold_device_error(reducer.error());
+    return;
+  }
+  const auto taken = reducer->reduce(pixels, 0.001, 0.0);
+  if (!taken) {
+    hold_device_error(taken.error());
+    hold(pixels.size() != whole, "a whole frame is reduced");
     return;
   }
   hold(width > 0 && height > 0 && pixels.size() == whole, "a frame that is reduced is whole");
+  hold(!taken->reduced && taken->bad == 0, "without maps there is no reduced mean, and no pixel is bad");
+  const calibration::RegionMoments* reduced = &taken->raw;
   const Moments plain = plain_moments(pixels, width, height, full_scale, mask);
   hold(reduced->n > 0 && reduced->saturated <= reduced->n, "no more pixels are saturated than there are");
   hold(reduced->n <= whole && std::isfinite(reduced->m3), "a region lies in its frame");
