@@ -89,9 +89,10 @@ Result<PairedPoint> make_pair(const PlannedPoint& point, const RawReading& sampl
   const Geometry& at = q_reference->geometry;
   GONIO_TRY(standard.check_reach(point.wavelength, at));
   if (!(q_reference->q > 0.0)) {
-    return failure(
-        no_ratio(point, fmt::format("reference reading {} of {:.4g} DN net", reference.id, q_reference->mean_net_dn),
-                 "more than 0"));
+    return failure(no_ratio(point,
+                            fmt::format("reference reading {} of {:.4g} {} net", reference.id, q_reference->mean_net_dn,
+                                        detector.power ? "of its range" : "DN"),
+                            "more than 0"));
   }
   PairedPoint pair{.sample = std::move(*q_sample),
                    .reference = std::move(*q_reference),
@@ -243,6 +244,8 @@ std::string describe_inputs(const InstrumentModel& instrument, const ReferenceSt
   };
   line("detector", {d.electrons_per_dn, d.read_noise_dn, d.full_scale_dn, d.exposure_offset_s.value,
                     d.exposure_offset_s.u, d.u_linearity, d.u_dark_drift_dn_per_s});
+  if (d.u_monitor_window > 0.0) line("monitor", {d.u_monitor_window});
+  if (d.power) line("radiometer", {d.power->noise, d.power->u_range, d.power->u_zero});
   line("angles", {a.u_zero_theta_i.si(), a.u_zero_theta_r.si(), a.u_zero_phi_r.si(), a.u_repeat.si()});
   line("lamp", {l.u_after_monitor, l.correlation_s, l.u_reproducibility, l.reproducibility_dof});
   text += fmt::format("standard {} {} {}\n", standard.serial(), c.date, c.expires);

@@ -33,6 +33,7 @@ enum class ComponentSource : std::uint8_t {
   DarkNoise,
   DarkDrift,
   SharedReference,
+  Range,
 };
 
 /// Numbers the components of a scan as they first appear.

@@ -13,6 +13,7 @@ struct Sums {
   double raw_level = 0.0;   // before any map: what the dark current's shot noise goes with
   double variance = 0.0;    // spatial
   double per_pixels = 0.0;  // 1 / n
+  double mean_w2 = 0.0;     // of a radiometer: the variances of the readings
 };
 
 double seconds_of(ExposureRung rung) {
@@ -53,6 +54,7 @@ double widening(Duration beyond, std::optional<Duration> spacing) {
 }  // namespace
 
 ExposureRung rung_of(const RawFrame& frame) {
+  if (frame.power) return {.range_pw = std::llround(frame.power->range_w * 1e12)};
   return {.exposure_us = std::llround(frame.exposure_s * 1e6), .gain_mdb = std::llround(frame.gain_db * 1e3)};
 }
 
@@ -66,6 +68,11 @@ DarkHistory::DarkHistory(const ScanReadings& scan, const DetectorModel& detector
       Sums& sums = by_visit[{start, reading.visit_id}][rung_of(frame)];
       if (sums.frames == 0.0) sums.at = reading.at;
       sums.frames += 1.0;
+      if (frame.power) {
+        sums.level += frame.power->mean_w;
+        sums.mean_w2 += noise_variance_w2(detector.power.value_or(PowerModel{}), *frame.power);
+        continue;
+      }
       sums.level += frame.signal_dn();
       sums.raw_level += frame.region.mean;
       sums.variance += frame.region.m2;
@@ -74,6 +81,13 @@ DarkHistory::DarkHistory(const ScanReadings& scan, const DetectorModel& detector
   }
   for (const auto& [visit, rungs] : by_visit) {
     for (const auto& [rung, sums] : rungs) {
+      if (rung.range_pw != 0) {
+        visits_[rung].push_back({.visit_id = visit.second,
+                                 .at = sums.at,
+                                 .level_dn = sums.level / sums.frames,
+                                 .u_dn = std::sqrt(sums.mean_w2) / sums.frames});
+        continue;
+      }
       const double variance = pixel_variance(detector, rung, sums, dark_rate(rungs, rung.gain_mdb));
       visits_[rung].push_back({.visit_id = visit.second,
                                .at = sums.at,

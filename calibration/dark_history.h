@@ -12,15 +12,16 @@
 
 namespace gonio::calibration {
 
-/// An exposure and gain: each has its own dark. Made of what the camera says it used.
+/// An exposure and gain, or a range: each has its own dark. Made of what the detector says it used.
 struct ExposureRung {
   std::int64_t exposure_us = 0;
   std::int64_t gain_mdb = 0;
+  std::int64_t range_pw = 0;  ///< of a radiometer, which has neither exposure nor gain; 0: a camera
   friend auto operator<=>(const ExposureRung&, const ExposureRung&) = default;
 };
 [[nodiscard]] ExposureRung rung_of(const RawFrame& frame);
 
-/// The mean dark level of one visit at one rung.
+/// The mean dark level of one visit at one rung. In W instead of DN for a radiometer.
 struct DarkVisit {
   std::int64_t visit_id = 0;
   Instant at{};

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "base/units.h"
+#include "calibration/power_model.h"
 
 namespace gonio::calibration {
 
@@ -24,6 +26,10 @@ struct DetectorModel {
   /// Of exposure: what interpolation between two darks may miss; shared between them.
   double u_dark_drift_dn_per_s = 0.0;
   NoiseSource noise = NoiseSource::PhotonTransfer;
+  /// Relative, random in each frame: lamp light that the monitor did not have in the same window; 0 for one that is
+  /// gated by the exposure itself.
+  double u_monitor_window = 0.0;
+  std::optional<PowerModel> power;  ///< a radiometer: then full_scale_dn is 1, of its range
 };
 
 /// Standard uncertainties (k = 1) of the directions, shared by the scan (zeros of the arms) and from move to move.

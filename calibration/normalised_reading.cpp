@@ -22,11 +22,23 @@ Error refusal(const RawReading& reading, ErrorCode code, std::string seen, std::
           .limit = std::move(limit)};
 }
 
+Result<void> check_power(const RawReading& reading, const RawFrame& frame) {
+  if (frame.power->samples > 0 && frame.power->range_w > 0.0 && frame.monitor_mean > 0.0) return {};
+  return failure(refusal(reading, ErrorCode::IncompleteData,
+                         fmt::format("{} samples in a range of {} W, monitor {}", frame.power->samples,
+                                     frame.power->range_w, frame.monitor_mean),
+                         "all of them above 0"));
+}
+
 Result<void> check(const RawReading& reading) {
   if (reading.frames.empty()) {
     return failure(refusal(reading, ErrorCode::IncompleteData, "no frame", "at least one frame"));
   }
   for (const RawFrame& frame : reading.frames) {
+    if (frame.power) {
+      GONIO_TRY(check_power(reading, frame));
+      continue;
+    }
     if (frame.region.saturated > 0) {
       return failure(refusal(reading, ErrorCode::Saturated, fmt::format("{} saturated pixels", frame.region.saturated),
                              "none inside the aperture"));
@@ -74,10 +86,12 @@ double noise_variance(const RawFrame& frame, double net, const DarkLevel& dark, 
 }
 
 struct FrameTerm {
-  double net = 0.0;       // DN
-  double light = 0.0;     // (t + t0) G m
-  double variance = 0.0;  // of net, DN^2, without the dark level's own
+  double net = 0.0;       // DN, or W
+  double light = 0.0;     // (t + t0) G m, or m
+  double variance = 0.0;  // of net, without the dark level's own
   double u_light = 0.0;   // from the monitor's noise
+  double share = 0.0;     // net as the detector's linearity sees it: DN, or a part of the range
+  double gain_monitor = 0.0;
 };
 
 // Of the sum of the net means, from their scatter about q times their light: sqrt(m) s. The monitor's noise is in it
@@ -89,6 +103,39 @@ double scatter(const std::vector<FrameTerm>& terms, double q) {
   return std::sqrt(squares * m / (m - 1.0));
 }
 
+double u_monitor(const RawFrame& frame, const DetectorModel& detector) {
+  return std::hypot(frame.monitor_se, detector.u_monitor_window * frame.monitor_mean);
+}
+
+FrameTerm camera_term(const RawFrame& frame, const DarkLevel& dark, const DetectorModel& detector) {
+  const double gain = gain_factor(frame);
+  const double exposure = (frame.exposure_s + detector.exposure_offset_s.value) * gain;
+  FrameTerm term{.net = frame.signal_dn() - dark.level_dn, .light = exposure * frame.monitor_mean};
+  term.variance = noise_variance(frame, term.net, dark, detector);
+  term.u_light = exposure * u_monitor(frame, detector);
+  term.share = term.net;
+  term.gain_monitor = gain * frame.monitor_mean;
+  return term;
+}
+
+FrameTerm power_term(const RawFrame& frame, const DarkLevel& dark, const DetectorModel& detector) {
+  const PowerReading& power = *frame.power;
+  FrameTerm term{.net = power.mean_w - dark.level_dn, .light = frame.monitor_mean};
+  term.variance = noise_variance_w2(detector.power.value_or(PowerModel{}), power);
+  term.u_light = u_monitor(frame, detector);
+  term.share = term.net / power.range_w;
+  return term;
+}
+
+Error no_dark(const RawReading& reading, const RawFrame& frame) {
+  if (frame.power) {
+    return refusal(reading, ErrorCode::IncompleteData, "no dark in its range",
+                   fmt::format("a dark visit in the range of {} W", frame.power->range_w));
+  }
+  return refusal(reading, ErrorCode::IncompleteData, "no dark at its exposure",
+                 fmt::format("a dark visit at {} s and {} dB", frame.exposure_s, frame.gain_db));
+}
+
 }  // namespace
 
 Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
@@ -96,33 +143,27 @@ Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory
   GONIO_TRY(check(reading));
   std::map<ExposureRung, DarkShare> shares;
   std::vector<FrameTerm> terms;
-  double net = 0.0, light = 0.0, variance = 0.0, monitor2 = 0.0, gain_monitor = 0.0;
+  FrameTerm sum;
+  double monitor2 = 0.0;
   for (const RawFrame& frame : reading.frames) {
     const ExposureRung rung = rung_of(frame);
     const std::optional<DarkLevel> dark = darks.at(rung, reading.at);
-    if (!dark) {
-      return failure(refusal(reading, ErrorCode::IncompleteData, "no dark at its exposure",
-                             fmt::format("a dark visit at {} s and {} dB", frame.exposure_s, frame.gain_db)));
-    }
-    const double gain = gain_factor(frame);
-    const double exposure = (frame.exposure_s + detector.exposure_offset_s.value) * gain;
-    FrameTerm term{.net = frame.signal_dn() - dark->level_dn, .light = exposure * frame.monitor_mean};
-    term.variance = noise_variance(frame, term.net, *dark, detector);
-    net += term.net;
-    light += term.light;
-    variance += term.variance;
-    term.u_light = exposure * frame.monitor_se;
+    if (!dark) return failure(no_dark(reading, frame));
+    const FrameTerm& term =
+        terms.emplace_back(frame.power ? power_term(frame, *dark, detector) : camera_term(frame, *dark, detector));
+    sum.net += term.net;
+    sum.light += term.light;
+    sum.variance += term.variance;
+    sum.share += term.share;
+    sum.gain_monitor += term.gain_monitor;
     monitor2 += term.u_light * term.u_light;
-    gain_monitor += gain * frame.monitor_mean;
-    DarkShare& share = shares.try_emplace(rung, DarkShare{rung, *dark, 0.0}).first->second;
-    share.dq_dlevel -= 1.0;
-    terms.push_back(term);
+    shares.try_emplace(rung, DarkShare{rung, *dark, 0.0}).first->second.dq_dlevel -= 1.0;
   }
-  NormalisedReading out{.q = net / light,
-                        .u_noise = std::sqrt(variance) / light,
-                        .u_monitor = std::abs(net) * std::sqrt(monitor2) / (light * light),
-                        .dlnq_dt0 = -gain_monitor / light,
-                        .mean_net_dn = net / static_cast<double>(reading.frames.size()),
+  NormalisedReading out{.q = sum.net / sum.light,
+                        .u_noise = std::sqrt(sum.variance) / sum.light,
+                        .u_monitor = std::abs(sum.net) * std::sqrt(monitor2) / (sum.light * sum.light),
+                        .dlnq_dt0 = -sum.gain_monitor / sum.light,
+                        .mean_net_dn = sum.share / static_cast<double>(reading.frames.size()),
                         .frame_dof = static_cast<double>(reading.frames.size()) - 1.0,
                         .geometry = mean_geometry(reading.frames),
                         .at = reading.at};
@@ -130,11 +171,11 @@ Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory
     out.frame_chi2 += std::pow(term.net - out.q * term.light, 2) / (term.variance + std::pow(out.q * term.u_light, 2));
   }
   if (detector.noise == NoiseSource::RepeatedFrames && terms.size() > 1) {
-    out.u_noise = scatter(terms, out.q) / light;
+    out.u_noise = scatter(terms, out.q) / sum.light;
     out.noise_dof = out.frame_dof;
   }
   for (auto& [rung, share] : shares) {
-    share.dq_dlevel /= light;
+    share.dq_dlevel /= sum.light;
     out.darks.push_back(std::move(share));
   }
   return out;

@@ -20,15 +20,16 @@ struct DarkShare {
 
 /// One reading, cleared of dark, exposure, gain and lamp:
 ///   q = sum_j (S_j - D_j) / sum_j ((t_j + t0) G_j m_j)     over its frames j,
-/// in DN per second and unit of the monitor; signed. The ratio of sums weighs frames as their light does, so that
-/// frames of different exposures combine as their shot noise asks.
+/// in DN per second and unit of the monitor; signed. A radiometer has no exposure: q = sum_j (P_j - D_j) / sum_j m_j,
+/// in W per unit of the monitor. The ratio of sums weighs frames as their light does, so that frames of different
+/// exposures combine as their shot noise asks.
 struct NormalisedReading {
   double q = 0.0;
   double u_noise = 0.0;  ///< of q, random: by photon transfer, or from the frames' own scatter
   double noise_dof = std::numeric_limits<double>::infinity();  ///< how well u_noise is known
   double u_monitor = 0.0;                                      ///< of q: the monitor's noise over the exposures, random
   double dlnq_dt0 = 0.0;                                       ///< 1/s
-  double mean_net_dn = 0.0;  ///< of a pixel of a frame: what the detector's linearity depends on
+  double mean_net_dn = 0.0;  ///< of a pixel of a frame, or as part of the range: what linearity depends on
   double frame_chi2 = 0.0;   ///< of its frames about q, by the noise model; `frame_dof` degrees of freedom
   double frame_dof = 0.0;
   std::vector<DarkShare> darks;  ///< one each rung

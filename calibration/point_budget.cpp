@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,6 +30,7 @@ class Terms {
     add_zeros();
     add_detector();
     add_lamp();
+    add_ranges();
     add_darks(p_.sample, p_.dvalue_dq);
     add_darks(p_.reference, -p_.value / p_.reference.q);
     return make_budget(table_.components(), std::move(random_), std::move(shared_));
@@ -176,25 +178,58 @@ class Terms {
                lamp.u_after_monitor, "1", p_.value * u);
   }
 
+  // One range's gain cancels between two readings in it; each other one stays.
+  void add_ranges() {
+    const auto& power = instrument_.detector.power;
+    if (!power) return;
+    std::map<std::int64_t, double> parts;
+    for (const DarkShare& share : p_.sample.darks) parts[share.rung.range_pw] += p_.value;
+    for (const DarkShare& share : p_.reference.darks) parts[share.rung.range_pw] -= p_.value;
+    for (const auto& [range_pw, part] : parts) {
+      if (part == 0.0) continue;
+      add_shared({ComponentSource::Range, range_pw, 0, 0}, "gain of the range of " + range_text(range_pw),
+                 power->u_range, "1", part * power->u_range);
+    }
+  }
+
+  static std::string range_text(std::int64_t range_pw) {
+    return fmt::format("{:g} W", static_cast<double>(range_pw) * 1e-12);
+  }
+
   void add_darks(const NormalisedReading& reading, double dvalue_dq) {
     for (const DarkShare& share : reading.darks) {
       const double per_dn = dvalue_dq * share.dq_dlevel;
       add_dark_visit(share, share.level.before, per_dn * (1.0 - share.level.weight_after));
       add_dark_visit(share, share.level.after, per_dn * share.level.weight_after);
-      const double drift = instrument_.detector.u_dark_drift_dn_per_s;
-      const double exposure_s = static_cast<double>(share.rung.exposure_us) * 1e-6;
-      const std::int64_t before = share.level.before == nullptr ? -1 : share.level.before->visit_id;
-      const std::int64_t after = share.level.after == nullptr ? -1 : share.level.after->visit_id;
-      add_shared({ComponentSource::DarkDrift, before, after, 0}, fmt::format("dark drift {} to {}", before, after),
-                 drift, "DN/s", per_dn * drift * exposure_s * share.level.drift_widening);
+      add_dark_drift(share, per_dn * share.level.drift_widening);
     }
+  }
+
+  void add_dark_drift(const DarkShare& share, double per_dn) {
+    const std::int64_t before = share.level.before == nullptr ? -1 : share.level.before->visit_id;
+    const std::int64_t after = share.level.after == nullptr ? -1 : share.level.after->visit_id;
+    if (const auto& power = instrument_.detector.power) {
+      const double u = power->u_zero * static_cast<double>(share.rung.range_pw) * 1e-12;
+      add_shared({ComponentSource::DarkDrift, before, after, share.rung.range_pw},
+                 fmt::format("zero {} to {} in the range of {}", before, after, range_text(share.rung.range_pw)), u,
+                 "W", per_dn * u);
+      return;
+    }
+    const double drift = instrument_.detector.u_dark_drift_dn_per_s;
+    const double exposure_s = static_cast<double>(share.rung.exposure_us) * 1e-6;
+    add_shared({ComponentSource::DarkDrift, before, after, 0}, fmt::format("dark drift {} to {}", before, after), drift,
+               "DN/s", per_dn * drift * exposure_s);
   }
 
   void add_dark_visit(const DarkShare& share, const DarkVisit* visit, double per_dn) {
     if (visit == nullptr) return;
-    add_shared({ComponentSource::DarkNoise, visit->visit_id, share.rung.exposure_us, share.rung.gain_mdb},
-               fmt::format("dark visit {} at {} us", visit->visit_id, share.rung.exposure_us), visit->u_dn, "DN",
-               per_dn * visit->u_dn);
+    const bool is_power = share.rung.range_pw != 0;
+    add_shared({ComponentSource::DarkNoise, visit->visit_id, is_power ? share.rung.range_pw : share.rung.exposure_us,
+                share.rung.gain_mdb},
+               is_power
+                   ? fmt::format("dark visit {} in the range of {}", visit->visit_id, range_text(share.rung.range_pw))
+                   : fmt::format("dark visit {} at {} us", visit->visit_id, share.rung.exposure_us),
+               visit->u_dn, is_power ? "W" : "DN", per_dn * visit->u_dn);
   }
 
   const PairedPoint& p_;

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/geometry.h"
+#include "calibration/power_reading.h"
 
 namespace gonio::calibration {
 
@@ -35,7 +36,7 @@ struct ReducedMean {
   friend bool operator==(const ReducedMean&, const ReducedMean&) = default;
 };
 
-/// One frame with what was latched over exactly its exposure.
+/// One frame with what was latched over exactly its exposure; or one result of a radiometer, which has no pixels.
 struct RawFrame {
   RegionMoments region;
   std::optional<ReducedMean> reduced;  ///< where the detector has maps
@@ -46,6 +47,7 @@ struct RawFrame {
   Geometry at_open;         ///< encoders at the start and the end of the exposure, as angles
   Geometry at_close;
   double detector_temperature_c = 0.0;
+  std::optional<PowerReading> power;  ///< of a radiometer: then region, exposure and gain count for nothing
   /// What the light is taken from: the reduced mean where there is one. DN.
   [[nodiscard]] double signal_dn() const { return reduced ? reduced->mean_dn : region.mean; }
 };

@@ -45,18 +45,13 @@ Engine::Engine(Config config, EngineDevices devices, StoreWriter& writer, const 
       halt_(devices.halt_line, clock, HaltPathConfig{.heartbeat_timeout = config_.instrument.stage.heartbeat_timeout},
             [this](const HaltPathReport& report) { on_halt(report); }),
       stage_actor_(devices.stage, config_.instrument.stage, [this](const StageAnswer& answer) { on_stage(answer); }),
-      detector_actor_(
-          devices.detector,
-          {config_.instrument.detector.aperture, config_.instrument.maps, config_.instrument.model.detector},
-          [this](DetectorActor::Answer answer) { on_detector(std::move(answer)); }),
       store_desk_(*this),
       calibrator_(std::make_unique<Worker>(kMostScansToCompute)) {
   store_thread_ = std::make_unique<ActorThread<StoreDesk, StoreRequest>>("store", store_desk_, clock_, kMailbox, on_bug,
                                                                          turns_of(drivers::TapeParty::Store));
   stage_thread_ = std::make_unique<ActorThread<StageActor, StageRequest>>("stage", stage_actor_, clock_, kMailbox,
                                                                           on_bug, turns_of(drivers::TapeParty::Stage));
-  detector_thread_ = std::make_unique<ActorThread<DetectorActor, DetectorRequest>>(
-      "detector", detector_actor_, clock_, kMailbox, on_bug, turns_of(drivers::TapeParty::Detector));
+  make_detector(devices);
   desk_ = std::make_unique<SequencerDesk>(SequencerConfig{.instrument = config_.instrument, .epoch = halt_.epoch()},
                                           ports(), now());
   if (config_.by_hand_from) return;
@@ -68,9 +63,32 @@ Engine::~Engine() {
   to_sequencer_.close();
   if (sequencer_thread_.joinable()) sequencer_thread_.join();
   calibrator_.reset();
-  detector_thread_->stop();
+  if (camera_thread_) camera_thread_->stop();
+  if (radiometer_thread_) radiometer_thread_->stop();
+  if (monitor_thread_) monitor_thread_->stop();
   stage_thread_->stop();
   store_thread_->stop();
+}
+
+void Engine::make_detector(const EngineDevices& devices) {
+  const Instrument& instrument = config_.instrument;
+  const auto answer = [this](DetectorActor::Answer a) { on_detector(std::move(a)); };
+  if (devices.radiometer != nullptr && instrument.detector.power) {
+    radiometer_actor_ = std::make_unique<RadiometerActor>(*devices.radiometer, *instrument.detector.power, answer);
+    radiometer_thread_ = std::make_unique<ActorThread<RadiometerActor, DetectorRequest>>(
+        "detector", *radiometer_actor_, clock_, kMailbox, on_bug, turns_of(drivers::TapeParty::Detector));
+  } else {
+    camera_actor_ = std::make_unique<DetectorActor>(
+        *devices.camera, FrameReduction{instrument.detector.aperture, instrument.maps, instrument.model.detector},
+        answer);
+    camera_thread_ = std::make_unique<ActorThread<DetectorActor, DetectorRequest>>(
+        "detector", *camera_actor_, clock_, kMailbox, on_bug, turns_of(drivers::TapeParty::Detector));
+  }
+  if (devices.monitor == nullptr || !instrument.monitor) return;
+  monitor_actor_ = std::make_unique<MonitorActor>(*devices.monitor, *instrument.monitor,
+                                                  [this](MonitorActor::Answer a) { on_monitor(std::move(a)); });
+  monitor_thread_ = std::make_unique<ActorThread<MonitorActor, MonitorRequest>>(
+      "monitor", *monitor_actor_, clock_, kMailbox, on_bug, turns_of(drivers::TapeParty::Monitor));
 }
 
 void Engine::stop(const std::string& who, std::function<void(Result<drivers::Epoch>)> done) {
@@ -93,7 +111,13 @@ void Engine::command(const std::string& who, Verb verb, std::function<void(Resul
 SequencerDesk::Ports Engine::ports() {
   const Duration beat = config_.instrument.stage.heartbeat_timeout / 4;
   return {.to_stage = [this](StageRequest request) { return stage_thread_->post(std::move(request)); },
-          .to_detector = [this](DetectorRequest request) { return detector_thread_->post(std::move(request)); },
+          .to_detector =
+              [this](DetectorRequest request) {
+                return camera_thread_ ? camera_thread_->post(std::move(request))
+                                      : radiometer_thread_->post(std::move(request));
+              },
+          .to_monitor =
+              [this](MonitorRequest request) { return monitor_thread_ && monitor_thread_->post(std::move(request)); },
           .to_store = [this](StoreRequest request) { return store_thread_->post(std::move(request)); },
           .reply = [this](const CommandReply& reply) { on_reply(reply); },
           .renew = [this] { halt_.renew(); },
@@ -139,11 +163,13 @@ Result<void> Engine::take_turn(const drivers::TapeTurn& turn) {
     case drivers::TapeParty::Stage:
       return stage_thread_->take_turn(turn);
     case drivers::TapeParty::Detector:
-      return detector_thread_->take_turn(turn);
+      return camera_thread_ ? camera_thread_->take_turn(turn) : radiometer_thread_->take_turn(turn);
     case drivers::TapeParty::Store:
       return store_thread_->take_turn(turn);
-    case drivers::TapeParty::Halt:
     case drivers::TapeParty::Monitor:
+      if (monitor_thread_) return monitor_thread_->take_turn(turn);
+      break;
+    case drivers::TapeParty::Halt:
       break;
   }
   return failure({.code = ErrorCode::ReplayDiffers,
@@ -196,6 +222,29 @@ void Engine::on_detector(DetectorActor::Answer answer) {
     }
     tell(std::move(prepared));
   }
+}
+
+void Engine::on_monitor(MonitorActor::Answer answer) {
+  const auto note = [this](const auto& result) {
+    if (result) {
+      monitor_seen_.set(true);
+      return;
+    }
+    log_warning(describe(result.error()));
+    monitor_seen_.set_error(result.error());
+  };
+  if (auto* reading = std::get_if<MonitorAnswer>(&answer)) {
+    note(reading->reading);
+    tell(std::move(*reading));
+    return;
+  }
+  auto& ready = std::get<MonitorReady>(answer);
+  note(ready.monitor);
+  if (ready.monitor) {
+    log_info(
+        fmt::format("monitor: {} {}, serial {}", ready.monitor->vendor, ready.monitor->model, ready.monitor->serial));
+  }
+  tell(std::move(ready));
 }
 
 void Engine::on_store(StoreActor::Answer answer) {

@@ -16,6 +16,8 @@
 #include "daemon/engine/actor_thread.h"
 #include "daemon/engine/detector_actor.h"
 #include "daemon/engine/halt_path.h"
+#include "daemon/engine/monitor_actor.h"
+#include "daemon/engine/radiometer_actor.h"
 #include "daemon/engine/stage_actor.h"
 #include "daemon/engine/turns.h"
 #include "daemon/http/worker.h"
@@ -26,12 +28,14 @@ namespace gonio::daemon {
 /// The devices that the engine drives; they outlive it.
 struct EngineDevices {
   drivers::Stage& stage;
-  drivers::Detector& detector;
   drivers::HaltLine& halt_line;
+  drivers::Detector* camera = nullptr;        ///< null: a radiometer is the detector
+  drivers::Radiometer* radiometer = nullptr;  ///< likewise
+  drivers::Radiometer* monitor = nullptr;     ///< null: the stage's own
 };
 
-/// All actors with their threads, wired: stage, camera, store, sequencer, halt path, and a worker that computes BRDF
-/// when a scan ends. Threads: any.
+/// All actors with their threads, wired: stage, detector (camera or radiometer), monitor, store, sequencer, halt path,
+/// and a worker that computes BRDF when a scan ends. Threads: any.
 class Engine {
  public:
   struct Config {
@@ -65,8 +69,11 @@ class Engine {
 
   [[nodiscard]] SequencerStatus status() const { return desk_->status(); }
   [[nodiscard]] const Latest<drivers::StageState>& stage() const { return stage_seen_; }
-  /// The detector's last error; a success clears it.
-  [[nodiscard]] std::optional<Error> detector_error() const { return detector_seen_.error(); }
+  /// The last error of the detector, else of a radiometer that is the monitor; a success clears it.
+  [[nodiscard]] std::optional<Error> detector_error() const {
+    const std::optional<Error> error = detector_seen_.error();
+    return error ? error : monitor_seen_.error();
+  }
 
  private:
   /// The store's actor, with what follows a commit.
@@ -84,6 +91,8 @@ class Engine {
   void on_stage(const StageAnswer& answer);
   void note_stage_error(const Error& error);
   void on_detector(DetectorActor::Answer answer);
+  void on_monitor(MonitorActor::Answer answer);
+  void make_detector(const EngineDevices& devices);
   void on_store(StoreActor::Answer answer);
   void on_halt(const HaltPathReport& report);
   void on_reply(const CommandReply& reply);
@@ -107,6 +116,7 @@ class Engine {
   PendingReplies<Result<drivers::Epoch>> stops_;
   Latest<drivers::StageState> stage_seen_;
   Latest<bool> detector_seen_;
+  Latest<bool> monitor_seen_;
   Instant turn_now_{};  ///< of the turn in hand, by hand
   const Turns sequencer_turns_;
   TurnQueue<SequencerMessage> to_sequencer_;
@@ -114,12 +124,16 @@ class Engine {
   // In the order of starting; each is used by those below it only, or through the mailbox above.
   HaltPath halt_;
   StageActor stage_actor_;
-  DetectorActor detector_actor_;
+  std::unique_ptr<DetectorActor> camera_actor_;  ///< or the next one
+  std::unique_ptr<RadiometerActor> radiometer_actor_;
+  std::unique_ptr<MonitorActor> monitor_actor_;
   StoreDesk store_desk_;
   std::unique_ptr<Worker> calibrator_;
   std::unique_ptr<ActorThread<StoreDesk, StoreRequest>> store_thread_;
   std::unique_ptr<ActorThread<StageActor, StageRequest>> stage_thread_;
-  std::unique_ptr<ActorThread<DetectorActor, DetectorRequest>> detector_thread_;
+  std::unique_ptr<ActorThread<DetectorActor, DetectorRequest>> camera_thread_;
+  std::unique_ptr<ActorThread<RadiometerActor, DetectorRequest>> radiometer_thread_;
+  std::unique_ptr<ActorThread<MonitorActor, MonitorRequest>> monitor_thread_;
   std::unique_ptr<SequencerDesk> desk_;
   std::thread sequencer_thread_;
 };

@@ -71,6 +71,17 @@ void SequencerDesk::send(DetectorRequest request, Instant now) {
   }
 }
 
+void SequencerDesk::send(MonitorRequest request, Instant now) {
+  const Ticket ticket = ticket_of(request);
+  const bool is_reading = std::holds_alternative<TakeMonitor>(request);
+  if (ports_.to_monitor(std::move(request))) return;
+  if (is_reading) {
+    on(MonitorAnswer{ticket, failure(not_taken("monitor"))}, now);
+  } else {
+    on(MonitorReady{ticket, failure(not_taken("monitor"))}, now);
+  }
+}
+
 void SequencerDesk::send(StoreRequest request, Instant now) {
   const Ticket ticket = ticket_of(request);
   const bool is_commit = std::holds_alternative<Commit>(request);

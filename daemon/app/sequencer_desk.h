@@ -16,6 +16,7 @@ class SequencerDesk {
   struct Ports {
     std::function<bool(StageRequest)> to_stage;
     std::function<bool(DetectorRequest)> to_detector;
+    std::function<bool(MonitorRequest)> to_monitor;
     std::function<bool(StoreRequest)> to_store;
     std::function<void(const CommandReply&)> reply;
     std::function<void()> renew;  ///< the engine lives
@@ -37,6 +38,7 @@ class SequencerDesk {
   void hand_on(Instant now);
   void send(StageRequest request, Instant now);
   void send(DetectorRequest request, Instant now);
+  void send(MonitorRequest request, Instant now);
   void send(StoreRequest request, Instant now);
   void look_at_stage(Instant now);
 

@@ -99,9 +99,7 @@ std::vector<float> layer(const MapFile& map, std::size_t index) {
 }  // namespace
 
 DetectorConfig read_detector(TomlReader& table) {
-  constexpr std::array<std::string_view, 1> kKinds{"genicam"};
   constexpr std::array<std::string_view, 2> kLinks{"gige", "usb3"};  // in the order of CameraLinkKind
-  (void)table.choice("kind", kKinds);
   DetectorConfig detector;
   detector.link = static_cast<CameraLinkKind>(table.choice_or("link", 0, kLinks));
   detector.address = table.text_or("address", "");

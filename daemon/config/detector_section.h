@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "base/result.h"
 #include "calibration/aperture_mask.h"
 #include "calibration/detector_maps.h"
+#include "daemon/config/power_meter.h"
 
 namespace gonio {
 class TomlReader;
@@ -27,7 +29,8 @@ struct DetectorMapFiles {
 
 enum class CameraLinkKind : std::uint8_t { Gige, Usb3 };
 
-/// The imaging detector as instrument.toml has it. Exposures are shortest * 2^n, up to longest: wall time.
+/// The detector as instrument.toml has it. Exposures are shortest * 2^n, up to longest: wall time. A radiometer has
+/// neither pixels nor an aperture, and its exposure is the time of one reading.
 struct DetectorConfig {
   CameraLinkKind link = CameraLinkKind::Gige;
   std::string address;  ///< not part of the configuration's hash; empty: searched for by its serial number
@@ -44,9 +47,10 @@ struct DetectorConfig {
   int frames_at_most = 1;  ///< of one reading
   calibration::ApertureMask aperture;
   DetectorMapFiles map_files;
+  std::optional<PowerDetectorConfig> power;  ///< set: a radiometer
 };
 
-/// Reads `[detector]` but for its model. Mistakes stay in the reader.
+/// Reads `[detector]` of a camera, but for its kind and model. Mistakes stay in the reader.
 [[nodiscard]] DetectorConfig read_detector(TomlReader& table);
 
 /// Reads the files, found beside `directory`, and puts them together; their version is the SHA-256 of all their bytes.

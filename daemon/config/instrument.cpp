@@ -14,6 +14,7 @@
 #include "daemon/config/configuration_hash.h"
 #include "daemon/config/drives_section.h"
 #include "daemon/config/kinematics_section.h"
+#include "daemon/config/power_meter_section.h"
 
 namespace gonio::daemon {
 namespace {
@@ -164,6 +165,13 @@ calibration::DetectorModel read_detector_model(TomlReader table) {
   return model;
 }
 
+void read_detector_section(TomlReader table, Instrument& instrument) {
+  constexpr std::array<std::string_view, 2> kKinds{"genicam", "usbtmc"};
+  if (kKinds[table.choice("kind", kKinds)] == "usbtmc") return read_power_detector(table, instrument);
+  instrument.detector = read_detector(table);
+  instrument.model.detector = read_detector_model(table.table("model"));
+}
+
 calibration::AngleModel read_angles(TomlReader& table) {
   return {.u_zero_theta_i = angle(table, "u_zero_theta_i_deg", kAngleUncertainty),
           .u_zero_theta_r = angle(table, "u_zero_theta_r_deg", kAngleUncertainty),
@@ -212,9 +220,8 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
   const std::filesystem::path directory = about.text_or("reference_directory", "reference");
   instrument.reference_directory = (std::filesystem::path(file).parent_path() / directory).string();
   read_stage(root->table("stage"), instrument);
-  TomlReader detector = root->table("detector");
-  instrument.detector = read_detector(detector);
-  instrument.model.detector = read_detector_model(detector.table("model"));
+  read_detector_section(root->table("detector"), instrument);
+  read_monitor(*root, instrument);
   TomlReader angles = root->table("angles");
   instrument.model.angles = read_angles(angles);
   instrument.cones = read_cones(angles);

@@ -13,6 +13,7 @@
 #include "calibration/detector_maps.h"
 #include "calibration/instrument_model.h"
 #include "daemon/config/detector_section.h"
+#include "daemon/config/power_meter.h"
 #include "drivers/links/serial_line.h"
 #include "drivers/stage_config.h"
 
@@ -76,9 +77,13 @@ struct Instrument {
   Shadow shadow;
   DetectorConfig detector;
   std::shared_ptr<const calibration::DetectorMaps> maps;  ///< of the detector; nullptr: none configured
+  std::optional<PowerMonitorConfig> monitor;              ///< nothing: the stage's own
   ConeAngles cones;
   LampBand lamp;
   calibration::InstrumentModel model;
+
+  /// Whether the stage latches encoders and monitor over each exposure of the detector.
+  [[nodiscard]] bool has_gate() const { return stage.has_gate && !detector.power; }
 };
 
 /// Reads and checks the text. Errors: InvalidInput, UnknownKey, MissingKey, each with file, line, field and limit.

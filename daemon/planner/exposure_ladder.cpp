@@ -22,6 +22,7 @@ std::string beside(Duration exposure, const std::vector<Duration>& ladder) {
 }  // namespace
 
 std::vector<Duration> exposure_ladder(const DetectorConfig& detector, Duration max_time) {
+  if (detector.power) return std::vector<Duration>(detector.power->ranges_w.size(), detector.power->reading_time());
   const Duration longest = std::min(detector.longest_exposure, max_time);
   std::vector<Duration> ladder;
   Duration exposure = detector.shortest_exposure;

@@ -169,6 +169,14 @@ class Expansion {
 }  // namespace
 
 Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument) {
+  if (instrument.detector.power && !plan.exposures.empty()) {
+    return failure(Error{.code = ErrorCode::InvalidInput,
+                         .device = "plan",
+                         .tried = "find the detector's exposure for a stated one",
+                         .seen = "the detector is a radiometer",
+                         .limit = "no stated exposures: it has ranges, which are chosen",
+                         .where = InputLocation{.field = "reading.exposure_s"}});
+  }
   GONIO_TRY(rungs_of(plan.exposures, exposure_ladder(instrument.detector, plan.max_time)));
   return Expansion(plan, instrument).run();
 }

@@ -32,9 +32,11 @@ struct Job {
   Duration settle{};              ///< of the axes that the move in hand moves
   std::uint32_t gate_before = 0;  ///< the stage's count before the exposure in hand
   TimeParts time;
-  std::optional<drivers::StageState> gate;  ///< after the exposure in hand, once the stage has answered
-  std::optional<FrameSummary> frame;        ///< likewise the camera
-  std::optional<Error> gate_error;          ///< the gate was not seen in time; the camera's answer may say why
+  std::optional<drivers::StageState> gate;    ///< after the exposure in hand, once the stage has answered
+  std::optional<FrameSummary> frame;          ///< likewise the camera
+  std::optional<drivers::StageState> before;  ///< where no gate latches: the look before the exposure in hand
+  std::optional<PowerRecord> monitor;         ///< a radiometer's in the lamp's light, over the exposure in hand
+  std::optional<Error> gate_error;            ///< the gate was not seen in time; the camera's answer may say why
 };
 
 /// A scan that is not over, with all that the sequencer knows of it. The durable part is the store's; the rest is made
@@ -56,14 +58,24 @@ struct ActiveScan {
         dark_owed(stored.dark_owed) {
     for (const auto& [item, count] : stored.attempts) failures[item] = count;
     for (const Duration exposure : stored.exposures_used) note_rung_of(exposure);
+    if (!points.empty()) {
+      const Filter* filter = filter_for(instrument, points.front().wavelength);
+      meter_wavelength = filter == nullptr ? points.front().wavelength : filter->centroid;
+    }
   }
 
+  // The readings of a radiometer all last as long: any of its ranges may have been in use.
   void note_rung_of(Duration exposure) {
     const auto& rungs = chooser.rungs();
     // Cameras round an exposure to their own clock: one per cent is far less than the factor of two between rungs.
     for (std::size_t rung = 0; rung < rungs.size(); ++rung) {
       if (std::abs(in_seconds(exposure) / in_seconds(rungs[rung]) - 1.0) < 0.01) note_rung(rung);
     }
+  }
+  [[nodiscard]] std::optional<PowerSettings> power_settings(std::size_t rung) const {
+    const std::optional<double> range = chooser.range_w(rung);
+    if (!range) return std::nullopt;
+    return PowerSettings{.range_w = *range, .wavelength = meter_wavelength};
   }
   void note_rung(std::size_t rung) {
     lowest_rung = std::min(lowest_rung.value_or(rung), rung);
@@ -85,6 +97,7 @@ struct ActiveScan {
   TimeParts spent;
   ScanItems items;
   ExposureChooser chooser;
+  Wavelength meter_wavelength;  ///< a radiometer's setting: of the first point's filter, for the whole scan
 
   std::optional<Command> finish_command;  ///< a finish that waits for the item in hand
   bool is_found = false;            ///< was not over at start-up: what the store says must first become `interrupted`
@@ -103,9 +116,10 @@ struct ActiveScan {
   DurationStatistics dark_time;
 
   /// While preparing: what is verified so far.
-  enum class Preparation : std::uint8_t { Detector, Look, LookAgain, Reset, Home, Verified };
+  enum class Preparation : std::uint8_t { Detector, Monitor, Look, LookAgain, Reset, Home, Verified, Shut, Zero };
   Preparation preparation = Preparation::Detector;
   bool reset_tried = false;
+  bool is_zeroed = false;  ///< a radiometer, in this run
   Instant look_again_at{};
   Instant prepared_since{};
 };

@@ -32,10 +32,22 @@ ExposureChooser::ExposureChooser(const Instrument& instrument, const ScanPolicy&
   // The planner has checked them; a scan resumes under the same configuration only.
   if (auto stated = rungs_of(policy.exposures, rungs_)) stated_ = std::move(*stated);
   dark_dn_.assign(rungs_.size(), 0.0);
+  if (instrument.detector.power) ranges_w_ = instrument.detector.power->ranges_w;
+  for (const Duration rung : rungs_) weights_.push_back(in_seconds(rung));
+  std::ranges::transform(ranges_w_, weights_.begin(), [](double range_w) { return 1.0 / range_w; });
+  if (ranges_w_.empty()) return;
+  const PowerDetectorConfig& power = *instrument.detector.power;
+  const double samples = static_cast<double>(power.samples) * static_cast<double>(power.meter.averages);
+  electrons_per_dn_ = std::numeric_limits<double>::infinity();  // its noise is that of the range
+  read_noise_dn_ = instrument.model.detector.power.value_or(calibration::PowerModel{}).noise / std::sqrt(samples);
+}
+
+std::optional<double> ExposureChooser::range_w(std::size_t rung) const {
+  return ranges_w_.empty() ? std::nullopt : std::optional(ranges_w_[rung]);
 }
 
 double ExposureChooser::frames_wished(std::size_t rung, const Signal& signal) const {
-  const double net = signal.rate_dn_per_s * in_seconds(rungs_[rung]);
+  const double net = signal.rate_dn_per_s * weights_[rung];
   // One frame: photon noise, and read noise twice because a dark of the same rung is subtracted (EMVA 1288, mean of n
   // pixels).
   const double variance =
@@ -67,10 +79,13 @@ ExposurePlan ExposureChooser::choose(const Signal& signal, std::size_t ceiling) 
   ExposurePlan nearest;
   double nearest_lack = std::numeric_limits<double>::infinity();
   for (std::size_t rung = 0; rung <= std::min(ceiling, rungs_.size() - 1); ++rung) {
-    const double level = dark_dn_[rung] + signal.rate_dn_per_s * in_seconds(rungs_[rung]);
+    const double level = dark_dn_[rung] + signal.rate_dn_per_s * weights_[rung];
     if (rung > 0 && level > kFill * full_scale_dn_) break;
     const ExposurePlan plan{rung, frames_needed(rung, signal)};
-    if (reaches(rung, signal) && (!cheapest || cost(plan) < cost(*cheapest))) cheapest = plan;
+    // Of a radiometer's ranges all cost the same: the smallest has the least noise.
+    const bool is_better =
+        !cheapest || cost(plan) < cost(*cheapest) || (range_w(rung) && cost(plan) == cost(*cheapest));
+    if (reaches(rung, signal) && is_better) cheapest = plan;
     const double lack = frames_wished(rung, signal) / plan.frames;
     if (lack < nearest_lack || std::isinf(lack)) {  // pure noise: the longest exposure sees the most
       nearest_lack = lack;

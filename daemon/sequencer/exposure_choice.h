@@ -22,7 +22,8 @@ struct ExposurePlan {
 
 /// Chooses exposures and frame counts from the photon-transfer model of the detector (EMVA 1288): the cheapest rung
 /// that reaches the plan's signal-to-noise within its time, well below full scale; if none does, the one that comes
-/// nearest. It learns the dark levels from dark visits, the signal from what was measured last, the time of a frame
+/// nearest. A radiometer's rungs are its ranges, the largest first, and its unit is the part of a range instead of the
+/// DN. It learns the dark levels from dark visits, the signal from what was measured last, the time of a frame
 /// from frames.
 class ExposureChooser {
  public:
@@ -33,7 +34,12 @@ class ExposureChooser {
   /// The rungs that the plan states, ascending: every reading uses them, as far as they do not saturate. Empty: chosen.
   [[nodiscard]] const std::vector<std::size_t>& stated() const { return stated_; }
 
-  /// Signal (DN above dark) per second of exposure, as the mean in the aperture.
+  /// Of a rung of a radiometer, its full scale; nothing for a camera.
+  [[nodiscard]] std::optional<double> range_w(std::size_t rung) const;
+  /// What a signal is multiplied by for the level on a rung: the exposure in s; of a radiometer 1 / full scale in W.
+  [[nodiscard]] double weight(std::size_t rung) const { return weights_[rung]; }
+
+  /// Signal (DN above dark) per second of exposure, as the mean in the aperture; of a radiometer the power in W.
   struct Signal {
     double rate_dn_per_s = 0.0;
     std::uint32_t pixels = 1;
@@ -62,6 +68,8 @@ class ExposureChooser {
   [[nodiscard]] int frames_allowed(std::size_t rung) const;
 
   std::vector<Duration> rungs_;
+  std::vector<double> weights_;
+  std::vector<double> ranges_w_;  ///< of a radiometer, by rung
   std::vector<std::size_t> stated_;
   std::vector<double> dark_dn_;
   std::map<std::pair<calibration::Target, int>, Signal> last_;

@@ -68,7 +68,7 @@ Measurement::Verdict Measurement::add_saturated() {
 
 Measurement::Verdict Measurement::add_lit(std::uint32_t pixels, ExposureChooser& chooser) {
   const double net_dn = mean_dn() - chooser.dark_dn(rung_);
-  const ExposureChooser::Signal signal{net_dn / in_seconds(chooser.rungs()[rung_]), pixels};
+  const ExposureChooser::Signal signal{net_dn / chooser.weight(rung_), pixels};
   const int needed = chooser.frames_needed(rung_, signal);
   if (on_rung_ == 1 && needed > 1 && changes_ < kMostChanges) {
     const ExposurePlan best = chooser.choose(signal, ceiling_);
@@ -110,8 +110,7 @@ Measurement::Verdict Measurement::drop_stated_rung(ExposureChooser& chooser) {
 }
 
 Measurement::Verdict Measurement::repeat_longest(std::uint32_t pixels, ExposureChooser& chooser) {
-  const ExposureChooser::Signal signal{(mean_dn() - chooser.dark_dn(rung_)) / in_seconds(chooser.rungs()[rung_]),
-                                       pixels};
+  const ExposureChooser::Signal signal{(mean_dn() - chooser.dark_dn(rung_)) / chooser.weight(rung_), pixels};
   Duration spent{};
   for (const std::size_t rung : rung_of_reading_) spent += chooser.rungs()[rung];
   const bool is_in_time = spent + chooser.rungs()[rung_] <= chooser.max_time();

@@ -17,7 +17,7 @@
 namespace gonio::daemon {
 
 /// Pairs a request with its one answer. Every request is answered, within its own deadline, also when it failed.
-/// The sequencer has at most one stage request, one detector request and a few commits open at a time; it never
+/// The sequencer has at most one stage, one detector and one monitor request and a few commits open at a time; it never
 /// withdraws one: an answer that it no longer wants is awaited, then dropped.
 using Ticket = std::uint64_t;
 
@@ -55,13 +55,31 @@ struct WatchGate {
   /// The positions that must hold at gate open and close, within each axis' window: else OutOfTolerance.
   drivers::MotionTarget held;
 };
-/// Apply the settings if they changed, trigger, collect, reduce: one frame.
+/// What a radiometer in the camera's place is told.
+struct PowerSettings {
+  double range_w = 0.0;   ///< full scale
+  Wavelength wavelength;  ///< one for the whole scan: darks hold for it only
+};
+/// Apply the settings if they changed, trigger, collect, reduce: one frame, or one reading of a radiometer.
 struct TakeFrame {
   Ticket ticket = 0;
   drivers::ExposureSettings settings;
+  std::optional<PowerSettings> power;  ///< of a radiometer
 };
-/// Open the camera, write its settings, read them back.
+/// Open the detector, write its settings, read them back.
 struct PrepareDetector {
+  Ticket ticket = 0;
+};
+/// Take the dark that is there as zero: a radiometer's, its shutter is closed.
+struct ZeroDetector {
+  Ticket ticket = 0;
+};
+/// Read a radiometer in the lamp's light for `window` or a little longer, from now on.
+struct TakeMonitor {
+  Ticket ticket = 0;
+  Duration window{};
+};
+struct PrepareMonitor {
   Ticket ticket = 0;
 };
 /// Make this durable, as one transaction. In the order of asking.
@@ -75,9 +93,10 @@ struct LoadUnfinished {
 };
 
 using StageRequest = std::variant<MoveTo, Home, ResetStage, LookAtStage, WatchGate>;
-using DetectorRequest = std::variant<TakeFrame, PrepareDetector>;
+using DetectorRequest = std::variant<TakeFrame, PrepareDetector, ZeroDetector>;
+using MonitorRequest = std::variant<TakeMonitor, PrepareMonitor>;
 using StoreRequest = std::variant<Commit, LoadUnfinished>;
-using Request = std::variant<StageRequest, DetectorRequest, StoreRequest>;
+using Request = std::variant<StageRequest, DetectorRequest, MonitorRequest, StoreRequest>;
 
 // ---- what the sequencer is told ----
 
@@ -86,6 +105,7 @@ struct StageAnswer {
   Ticket ticket = 0;
   Result<drivers::StageState> state;
 };
+/// A radiometer shows itself as one pixel, in parts of its range: `region` has what exposures are chosen by.
 struct FrameSummary {
   calibration::RegionMoments region;
   std::optional<calibration::ReducedMean> reduced;  ///< with maps; not of a saturated frame
@@ -94,16 +114,27 @@ struct FrameSummary {
   std::uint64_t frame_id = 0;
   std::uint64_t camera_time_ns = 0;
   std::optional<double> temperature_c;  ///< nothing: the camera has no sensor
+  std::optional<PowerRecord> power;
 };
-/// The answer to TakeFrame.
+/// The answer to TakeFrame. An overload of a radiometer is a saturated pixel, without `power`.
 struct FrameAnswer {
   Ticket ticket = 0;
   Result<FrameSummary> frame;
 };
-/// The answer to PrepareDetector.
+/// The answer to PrepareDetector and ZeroDetector.
 struct DetectorAnswer {
   Ticket ticket = 0;
   Result<drivers::DetectorIdentity> detector;
+};
+/// The answer to TakeMonitor.
+struct MonitorAnswer {
+  Ticket ticket = 0;
+  Result<PowerRecord> reading;
+};
+/// The answer to PrepareMonitor.
+struct MonitorReady {
+  Ticket ticket = 0;
+  Result<drivers::DetectorIdentity> monitor;
 };
 /// The answer to Commit: what was made, and the committed events in order. The store's thread publishes them itself.
 struct CommitAnswer {
@@ -121,7 +152,8 @@ struct StopHappened {
   std::string who;
 };
 
-using SequencerMessage =
-    std::variant<Command, StageAnswer, FrameAnswer, DetectorAnswer, CommitAnswer, UnfinishedAnswer, StopHappened>;
+/// New kinds come last: a tape knows them by their place.
+using SequencerMessage = std::variant<Command, StageAnswer, FrameAnswer, DetectorAnswer, CommitAnswer, UnfinishedAnswer,
+                                      StopHappened, MonitorAnswer, MonitorReady>;
 
 }  // namespace gonio::daemon

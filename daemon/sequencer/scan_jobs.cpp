@@ -6,6 +6,7 @@
 
 #include "daemon/planner/planner.h"
 #include "daemon/sequencer/failure_policy.h"
+#include "daemon/sequencer/held_window.h"
 #include "daemon/sequencer/scan_events.h"
 #include "daemon/sequencer/sequencer_impl.h"
 
@@ -31,7 +32,21 @@ Duration settle_time(const drivers::StageConfig& stage, const drivers::MotionTar
   return settle;
 }
 
-ReadingRecord reading_from(const FrameSummary& frame, const drivers::StageState& after, Instant middle) {
+// A radiometer's word counts instead of the stage's own.
+void set_monitor(drivers::GateRecord& gate, const calibration::PowerReading& monitor) {
+  gate.monitor_mean = monitor.mean_w;
+  gate.monitor_se = monitor.standard_error_w;
+  gate.monitor_samples = static_cast<std::uint32_t>(monitor.samples);
+}
+
+Instant middle_of(const Job& job, Duration exposure) {
+  const auto& power = job.frame->power;
+  return power ? power->started + (power->ended - power->started) / 2 : job.asked + exposure / 2;
+}
+
+ReadingRecord reading_from(const Job& job, Duration exposure) {
+  const FrameSummary& frame = *job.frame;
+  const drivers::StageState& after = *job.gate;
   return ReadingRecord{.region = frame.region,
                        .reduced = frame.reduced,
                        .maps_version = frame.maps_version,
@@ -49,7 +64,9 @@ ReadingRecord reading_from(const FrameSummary& frame, const drivers::StageState&
                        .detector_temperature_c = after.detector_temperature_c,
                        .room_temperature_c = after.room_temperature_c,
                        .humidity_percent = after.humidity_percent,
-                       .at = middle};
+                       .at = middle_of(job, exposure),
+                       .power = frame.power,
+                       .monitor_power = job.monitor};
 }
 
 }  // namespace
@@ -131,10 +148,53 @@ void Sequencer::Impl::begin_exposure(Instant now) {
   job.gate.reset();
   job.frame.reset();
   job.gate_error.reset();
+  job.before.reset();
+  job.monitor.reset();
   job.gate_before = stage->gate.count;
+  if (!config.instrument.has_gate()) return ask_stage(StageUse::Before, LookAtStage{});
   ask_stage(StageUse::Gate, WatchGate{.after = job.gate_before, .expected = exposure, .held = job.target});
+  take_light(now);
+}
+
+void Sequencer::Impl::take_light(Instant now) {
+  Job& job = *scan->job;
+  const std::size_t rung = job.measurement->rung();
+  const Duration exposure = scan->chooser.rungs()[rung];
+  job.asked = now;
+  if (config.instrument.monitor) ask_monitor(MonitorUse::Reading, TakeMonitor{.window = exposure});
   ask_detector(DetectorUse::Frame,
-               TakeFrame{.settings = {.exposure = exposure, .gain_db = config.instrument.detector.gain_db}});
+               TakeFrame{.settings = {.exposure = exposure, .gain_db = config.instrument.detector.gain_db},
+                         .power = scan->power_settings(rung)});
+}
+
+// Without a gate the encoders are read before and after: the exposure begins when the first look has come, and the
+// second is asked for when its light is there.
+void Sequencer::Impl::on_before(const Result<drivers::StageState>& state, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!state) return job_failed(state.error(), now);
+  const auto held = check_held(config.instrument, scan->job->target, *state, "before");
+  if (!held) return job_failed(held.error(), now);
+  scan->job->before = *state;
+  take_light(now);
+}
+
+void Sequencer::Impl::on_after(const Result<drivers::StageState>& state, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!state) return job_failed(state.error(), now);
+  const auto held = check_held(config.instrument, scan->job->target, *state, "after");
+  if (!held) return job_failed(held.error(), now);
+  const auto record = window_record(*scan->job->before, *state);
+  if (!record) return job_failed(record.error(), now);
+  scan->job->gate = *state;
+  scan->job->gate->gate = *record;
+  join_exposure(now);
+}
+
+void Sequencer::Impl::on_monitor(const Result<PowerRecord>& reading, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!reading) return job_failed(reading.error(), now);
+  scan->job->monitor = *reading;
+  join_exposure(now);
 }
 
 void Sequencer::Impl::on_gate(const Result<drivers::StageState>& state, Instant now) {
@@ -167,14 +227,18 @@ void Sequencer::Impl::on_frame(const Result<FrameSummary>& frame, Instant now) {
 
 void Sequencer::Impl::join_exposure(Instant now) {
   Job& job = *scan->job;
-  if (!job.gate || !job.frame) return;
+  if (!job.frame || (config.instrument.monitor && !job.monitor)) return;
+  if (!job.gate) {
+    if (!config.instrument.has_gate()) ask_stage(StageUse::After, LookAtStage{});
+    return;
+  }
   const Duration exposure = scan->chooser.rungs()[job.measurement->rung()];
   const Duration beyond = std::max(Duration::zero(), now - job.asked - exposure);
   job.time.expose += now - job.asked - beyond;
   job.time.read += beyond;
   scan->chooser.learn_frame_time(beyond);
-  const auto verdict =
-      job.measurement->add(reading_from(*job.frame, *job.gate, job.asked + exposure / 2), scan->chooser);
+  if (job.monitor) set_monitor(job.gate->gate, job.monitor->reading);
+  const auto verdict = job.measurement->add(reading_from(job, exposure), scan->chooser);
   if (lamp_is_out(job.gate->gate, now)) return drop_job(now);
   if (verdict == Measurement::Verdict::Saturated) {
     return job_failed(Error{.code = ErrorCode::Saturated,

@@ -148,6 +148,8 @@ void Sequencer::Impl::advance_preparing(Instant now) {
   switch (scan->preparation) {
     case Preparation::Detector:
       return ask_detector(DetectorUse::Prepare, PrepareDetector{});
+    case Preparation::Monitor:
+      return ask_monitor(MonitorUse::Prepare, PrepareMonitor{});
     case Preparation::Look:
       return ask_stage(StageUse::Look, LookAtStage{});
     case Preparation::LookAgain:
@@ -157,9 +159,23 @@ void Sequencer::Impl::advance_preparing(Instant now) {
       return ask_stage(StageUse::Reset, ResetStage{.epoch = epoch});
     case Preparation::Home:
       return ask_stage(StageUse::Home, gonio::daemon::Home{.epoch = epoch});
+    case Preparation::Shut:
+      return ask_stage(StageUse::Darken, MoveTo{.epoch = epoch, .detector_shutter_open = false});
+    case Preparation::Zero:
+      return ask_detector(DetectorUse::Zero, ZeroDetector{});
     case Preparation::Verified:
+      if (zero_is_due()) {
+        scan->preparation = Preparation::Shut;
+        return advance_preparing(now);
+      }
       return transition(ScanEvent::Prepared, now, kDaemon, "devices verified");
   }
+}
+
+// Once a run, before its first dark: a zero between two darks would shift what lies between them.
+bool Sequencer::Impl::zero_is_due() const {
+  const auto& power = config.instrument.detector.power;
+  return power && power->zero && !scan->is_zeroed && !scan->last_dark;
 }
 
 void Sequencer::Impl::on_look(const Result<drivers::StageState>& state, Instant now) {

@@ -55,6 +55,12 @@ void Sequencer::Impl::ask_detector(DetectorUse use, DetectorRequest request) {
   requests.emplace_back(std::move(request));
 }
 
+void Sequencer::Impl::ask_monitor(MonitorUse use, MonitorRequest request) {
+  monitor_call = {++last_ticket, use};
+  std::visit([this](auto& r) { r.ticket = last_ticket; }, request);
+  requests.emplace_back(std::move(request));
+}
+
 void Sequencer::Impl::commit(StoreTransaction transaction, PendingCommit pending) {
   commits.emplace(++last_ticket, std::move(pending));
   requests.emplace_back(StoreRequest{Commit{.ticket = last_ticket, .transaction = std::move(transaction)}});
@@ -75,6 +81,7 @@ void Sequencer::Impl::disown_calls() {
       stage_call && (stage_call->use == StageUse::HandLook || stage_call->use == StageUse::HandDone);
   if (stage_call && !is_by_hand) stage_call->use = StageUse::Dropped;
   if (detector_call) detector_call->use = DetectorUse::Dropped;
+  if (monitor_call) monitor_call->use = MonitorUse::Dropped;
 }
 
 // ---- answers ----
@@ -100,6 +107,12 @@ void Sequencer::Impl::on_message(const StageAnswer& answer, Instant now) {
       return on_prepared_step(answer.state, ActiveScan::Preparation::Look, now);
     case StageUse::Home:
       return on_prepared_step(answer.state, ActiveScan::Preparation::Verified, now);
+    case StageUse::Darken:
+      return on_prepared_step(answer.state, ActiveScan::Preparation::Zero, now);
+    case StageUse::Before:
+      return on_before(answer.state, now);
+    case StageUse::After:
+      return on_after(answer.state, now);
     case StageUse::Move:
       return on_moved(answer.state, now);
     case StageUse::Gate:
@@ -125,12 +138,35 @@ void Sequencer::Impl::on_message(const DetectorAnswer& answer, Instant now) {
   if (!detector_call || detector_call->ticket != answer.ticket) return;
   const DetectorUse use = detector_call->use;
   detector_call.reset();
-  if (use != DetectorUse::Prepare || !scan) return;
-  if (answer.detector) {
+  if (use == DetectorUse::Dropped || !scan) return;
+  if (!answer.detector) {
+    return add_hold(hold_for(answer.detector.error().code), "detector", describe(answer.detector.error()), now);
+  }
+  using Preparation = ActiveScan::Preparation;
+  if (use == DetectorUse::Zero) scan->is_zeroed = true;
+  if (use == DetectorUse::Zero) scan->preparation = Preparation::Verified;
+  if (use == DetectorUse::Prepare) {
+    scan->preparation = config.instrument.monitor ? Preparation::Monitor : Preparation::Look;
+  }
+}
+
+void Sequencer::Impl::on_message(const MonitorReady& answer, Instant now) {
+  if (!monitor_call || monitor_call->ticket != answer.ticket) return;
+  const MonitorUse use = monitor_call->use;
+  monitor_call.reset();
+  if (use != MonitorUse::Prepare || !scan) return;
+  if (answer.monitor) {
     scan->preparation = ActiveScan::Preparation::Look;
   } else {
-    add_hold(hold_for(answer.detector.error().code), "detector", describe(answer.detector.error()), now);
+    add_hold(hold_for(answer.monitor.error().code), "monitor", describe(answer.monitor.error()), now);
   }
+}
+
+void Sequencer::Impl::on_message(const MonitorAnswer& answer, Instant now) {
+  if (!monitor_call || monitor_call->ticket != answer.ticket) return;
+  const MonitorUse use = monitor_call->use;
+  monitor_call.reset();
+  if (use == MonitorUse::Reading) on_monitor(answer.reading, now);
 }
 
 void Sequencer::Impl::on_message(const CommitAnswer& answer, Instant now) {

@@ -22,8 +22,22 @@ struct Sequencer::Impl {
   explicit Impl(SequencerConfig configuration) : config(std::move(configuration)), epoch(config.epoch) {}
 
   // ---- channels (sequencer.cpp) ----
-  enum class StageUse : std::uint8_t { Dropped, Look, Home, Reset, Move, Gate, Shut, HandLook, HandDone };
-  enum class DetectorUse : std::uint8_t { Dropped, Prepare, Frame };
+  enum class StageUse : std::uint8_t {
+    Dropped,
+    Look,
+    Home,
+    Reset,
+    Darken,
+    Move,
+    Gate,
+    Before,
+    After,
+    Shut,
+    HandLook,
+    HandDone
+  };
+  enum class DetectorUse : std::uint8_t { Dropped, Prepare, Zero, Frame };
+  enum class MonitorUse : std::uint8_t { Dropped, Prepare, Reading };
   struct StageCall {
     Ticket ticket = 0;
     StageUse use = StageUse::Dropped;
@@ -31,6 +45,10 @@ struct Sequencer::Impl {
   struct DetectorCall {
     Ticket ticket = 0;
     DetectorUse use = DetectorUse::Dropped;
+  };
+  struct MonitorCall {
+    Ticket ticket = 0;
+    MonitorUse use = MonitorUse::Dropped;
   };
   struct PendingCommit {
     std::function<void(const CommitReceipt&, Instant)> done;
@@ -40,10 +58,11 @@ struct Sequencer::Impl {
 
   void ask_stage(StageUse use, StageRequest request);
   void ask_detector(DetectorUse use, DetectorRequest request);
+  void ask_monitor(MonitorUse use, MonitorRequest request);
   void commit(StoreTransaction transaction, PendingCommit pending);
   void load_from_store();
   void reply(CommandId id, Result<CommandDone> result) { replies.push_back({id, std::move(result)}); }
-  [[nodiscard]] bool channels_are_free() const { return !stage_call && !detector_call; }
+  [[nodiscard]] bool channels_are_free() const { return !stage_call && !detector_call && !monitor_call; }
   [[nodiscard]] bool has_uncommitted_item() const;
   /// Open calls are awaited, their answers then thrown away.
   void disown_calls();
@@ -52,6 +71,8 @@ struct Sequencer::Impl {
   void on_message(const StageAnswer& answer, Instant now);
   void on_message(const FrameAnswer& answer, Instant now);
   void on_message(const DetectorAnswer& answer, Instant now);
+  void on_message(const MonitorAnswer& answer, Instant now);
+  void on_message(const MonitorReady& answer, Instant now);
   void on_message(const CommitAnswer& answer, Instant now);
   void on_message(const UnfinishedAnswer& answer, Instant now);
   void on_message(const StopHappened& stop, Instant now);
@@ -79,6 +100,7 @@ struct Sequencer::Impl {
   void decide_after_restart(Instant now);
   void verify_stage(const drivers::StageState& state, Instant now);
   void on_prepared_step(const Result<drivers::StageState>& state, ActiveScan::Preparation next, Instant now);
+  [[nodiscard]] bool zero_is_due() const;
   void look_again(Duration patience, const std::string& what, Instant now);
 
   // ---- jobs (scan_jobs.cpp) ----
@@ -87,6 +109,10 @@ struct Sequencer::Impl {
   void start_park(Instant now);
   void drive_job(Instant now);
   void begin_exposure(Instant now);
+  void take_light(Instant now);
+  void on_before(const Result<drivers::StageState>& state, Instant now);
+  void on_after(const Result<drivers::StageState>& state, Instant now);
+  void on_monitor(const Result<PowerRecord>& reading, Instant now);
   void on_moved(const Result<drivers::StageState>& state, Instant now);
   void on_gate(const Result<drivers::StageState>& state, Instant now);
   void on_frame(const Result<FrameSummary>& frame, Instant now);
@@ -131,6 +157,7 @@ struct Sequencer::Impl {
   Ticket last_ticket = 0;
   std::optional<StageCall> stage_call;
   std::optional<DetectorCall> detector_call;
+  std::optional<MonitorCall> monitor_call;
   std::map<Ticket, PendingCommit> commits;
   std::optional<Ticket> load_call;
   std::optional<drivers::StageState> stage;  ///< as last seen

@@ -215,7 +215,10 @@ void RecordWriter::write_reading(const ReadingRecord& reading, std::int64_t atte
   insert.bind(reading.room_temperature_c).bind(reading.humidity_percent);
   insert.bind(reading.at.time_since_epoch().count()).bind(time_.utc_of(reading.at));
   insert.bind(reading.camera_temperature_c.has_value()).run();
-  if (reading.reduced) write_reduction(*reading.reduced, reading.maps_version, database_.last_id());
+  const std::int64_t id = database_.last_id();
+  if (reading.reduced) write_reduction(*reading.reduced, reading.maps_version, id);
+  if (reading.power) write_power(id, "detector", *reading.power);
+  if (reading.monitor_power) write_power(id, "monitor", *reading.monitor_power);
 }
 
 void RecordWriter::write_reduction(const calibration::ReducedMean& reduced, const std::string& maps_version,
@@ -227,6 +230,22 @@ void RecordWriter::write_reduction(const calibration::ReducedMean& reduced, cons
       .bind(reduced.mean_dn)
       .bind(reduced.u_noise_dn)
       .bind(reduced.u_maps_dn)
+      .run();
+}
+
+void RecordWriter::write_power(std::int64_t reading, const char* role, const PowerRecord& power) {
+  const calibration::PowerReading& p = power.reading;
+  database_.statement("INSERT INTO power_reading VALUES (?,?,?,?,?,?,?,?,?,?)")
+      .bind(reading)
+      .bind(role)
+      .bind(p.mean_w)
+      .bind(p.standard_error_w)
+      .bind(p.samples)
+      .bind(p.averages)
+      .bind(p.range_w)
+      .bind(in_nanometres(p.wavelength))
+      .bind(power.started.time_since_epoch().count())
+      .bind(power.ended.time_since_epoch().count())
       .run();
 }
 

@@ -43,6 +43,7 @@ class RecordWriter {
   std::int64_t id_of_instrument(const NewScan& scan);
   void write_points(const std::vector<ScanPoint>& points);
   void bind_time_parts(Statement& statement, const TimeParts& time);
+  void write_power(std::int64_t reading, const char* role, const PowerRecord& power);
   void write_reading(const ReadingRecord& reading, std::int64_t attempt, std::int64_t visit, std::int64_t sequence);
   void write_reduction(const calibration::ReducedMean& reduced, const std::string& maps_version, std::int64_t reading);
   void write_item(ScanId scan, const ItemKey& item, std::int64_t attempt, const std::string& who,

@@ -65,6 +65,13 @@ struct ItemKey {
   friend auto operator<=>(const ItemKey&, const ItemKey&) = default;
 };
 
+/// A reading of a radiometer, and when it was taken: a row of `power_reading`.
+struct PowerRecord {
+  calibration::PowerReading reading;
+  Instant started{};
+  Instant ended{};
+};
+
 /// One detector result, raw: a row of `reading`.
 struct ReadingRecord {
   bool used = true;  ///< false: a probe, or saturated; kept, never calibrated with
@@ -85,7 +92,9 @@ struct ReadingRecord {
   double detector_temperature_c = 0.0;
   double room_temperature_c = 0.0;
   double humidity_percent = 0.0;
-  Instant at{};  ///< middle of the exposure
+  Instant at{};                              ///< middle of the exposure
+  std::optional<PowerRecord> power;          ///< of a radiometer as detector; its overload has none
+  std::optional<PowerRecord> monitor_power;  ///< of a radiometer as lamp monitor
 };
 
 // ---- what can be written ----

@@ -264,7 +264,25 @@ CREATE TABLE frame_reduction(
 ) STRICT;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3};
+// Version 4: what a radiometer said, as detector (the reading's one pixel is its part of the range) or as lamp monitor.
+// A reading of an overload has no row.
+constexpr const char* kVersion4 = R"sql(
+CREATE TABLE power_reading(
+  reading_id INTEGER NOT NULL REFERENCES reading,
+  role TEXT NOT NULL CHECK (role IN ('detector', 'monitor')),
+  mean_w REAL NOT NULL,
+  standard_error_w REAL NOT NULL,
+  samples INTEGER NOT NULL,
+  averages INTEGER NOT NULL,
+  range_w REAL NOT NULL,
+  wavelength_nm REAL NOT NULL,
+  started_boottime_ns INTEGER NOT NULL,
+  ended_boottime_ns INTEGER NOT NULL,
+  PRIMARY KEY (reading_id, role)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "daemon/store/database.h"
@@ -54,6 +55,15 @@ Geometry geometry_from_counts(const Statement& row, int first, const drivers::St
   return drivers::directions_near(stage.kinematics, positions, *planned);
 }
 
+calibration::PowerReading power_from_row(const Statement& row, int first) {
+  return {.mean_w = row.real(first),
+          .standard_error_w = row.real(first + 1),
+          .samples = static_cast<int>(row.integer(first + 2)),
+          .averages = static_cast<int>(row.integer(first + 3)),
+          .range_w = row.real(first + 4),
+          .wavelength = nanometres(row.real(first + 5))};
+}
+
 // Columns as in the query of `readings`.
 ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& stage,
                             const std::vector<calibration::PlannedPoint>& points,
@@ -87,14 +97,15 @@ ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& st
                                                      .u_noise_dn = row.real(33),
                                                      .u_maps_dn = row.real(34)};
   }
+  if (!row.is_null(35)) reading.frame.power = power_from_row(row, 35);
   return reading;
 }
 
-// Frames of one attempt or visit at one exposure become one reading; its time is the mean of theirs.
+// Frames of one attempt or visit at one exposure, or in one range, become one reading; its time is the mean of theirs.
 class ReadingCollector {
  public:
   void add(const ReadingRow& row) {
-    const Key key{row.owner, row.frame.exposure_s};
+    const Key key{row.owner, row.frame.exposure_s, row.frame.power ? row.frame.power->range_w : 0.0};
     auto [place, is_new] = place_.try_emplace(key, readings_.size());
     if (is_new) {
       readings_.push_back(RawReading{.id = row.id,
@@ -117,7 +128,7 @@ class ReadingCollector {
   }
 
  private:
-  using Key = std::pair<std::int64_t, double>;
+  using Key = std::tuple<std::int64_t, double, double>;
   std::map<Key, std::size_t> place_;
   std::vector<RawReading> readings_;
 };
@@ -343,13 +354,16 @@ class SqliteStoreReader final : public StoreReader {
         "m3_dn3, m4_dn4, saturated, exposure_ns, gain_db, monitor_mean, monitor_se, detector_temperature_c, "
         "open_theta_i_counts, open_theta_r_counts, open_phi_r_counts, open_phi_i_counts, open_carriage_counts, "
         "open_filter_wheel_counts, close_theta_i_counts, close_theta_r_counts, close_phi_r_counts, close_phi_i_counts, "
-        "close_carriage_counts, close_filter_wheel_counts, counted_n, reduced_dn, u_noise_dn, u_maps_dn FROM ("
+        "close_carriage_counts, close_filter_wheel_counts, counted_n, reduced_dn, u_noise_dn, u_maps_dn, mean_w, "
+        "standard_error_w, samples, averages, range_w, set_to_nm FROM ("
         "SELECT d.*, d.boottime_ns AS t, a.run_id, a.target, a.point_index, p.wavelength_nm FROM item i "
         "JOIN attempt a USING (attempt_id) JOIN reading d USING (attempt_id) "
         "JOIN point p ON p.scan_id = a.scan_id AND p.point_index = a.point_index WHERE i.scan_id = ?1 "
         "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, NULL, NULL, NULL FROM visit v "
         "JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) LEFT JOIN frame_reduction USING (reading_id) "
-        "WHERE used = 1 ORDER BY reading_id");
+        "LEFT JOIN (SELECT reading_id AS of_reading, mean_w, "
+        "standard_error_w, samples, averages, range_w, wavelength_nm AS set_to_nm FROM power_reading WHERE role = "
+        "'detector') ON of_reading = reading_id WHERE used = 1 ORDER BY reading_id");
     query.bind(id);
     while (query.next()) collector.add(reading_from_row(query, stage, points, scales));
     return collector.take();

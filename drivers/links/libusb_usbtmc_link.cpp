@@ -72,7 +72,7 @@ std::string words_of(int error) {
     case LIBUSB_ERROR_BUSY:
       return "another program has the interface";
     case LIBUSB_ERROR_ACCESS:
-      return "no permission for the device's node (a udev rule gives it)";
+      return "no permission for the device's node: install packaging/udev/70-goniod-usbtmc.rules and plug it in again";
     case LIBUSB_ERROR_OVERFLOW:
       return "more bytes than asked for";
     default:

@@ -15,7 +15,8 @@ std::string scene_text(const SceneOptions& options) {
   std::ostringstream text;
   text << std::boolalpha << "[scene]\nname = \"scenario\"\nbench = \"" << kScenes
        << "/bench.toml\"\nseed = " << options.seed << "\ntime_scale = " << std::showpoint << options.time_scale
-       << "\ndraw_errors = " << options.draw_errors << "\n[sample]\nmodel = \"lambertian\"\nrho = 0.5\n";
+       << "\ndraw_errors = " << options.draw_errors << "\n[sample]\nmodel = \"lambertian\"\nrho = 0.5\n"
+       << options.more;
   return text.str();
 }
 
@@ -34,7 +35,7 @@ std::string plan_text(const PlanOptions& options) {
 
 Bench::Bench(const SceneOptions& scene) : scene_file_(folder_ / "scene.toml") {
   write_text(scene_file_, scene_text(scene));
-  simulator_ = std::make_unique<Simulator>(folder_.path(), scene_file_, scene.seed, scene.stage_wire);
+  simulator_ = std::make_unique<Simulator>(folder_.path(), scene_file_, scene.seed, scene.stage_wire, scene.history);
   files_ = {simulator_->instrument_file(), simulator_->reference_folder(), folder_ / "store.sqlite"};
 }
 
@@ -51,7 +52,7 @@ std::string Bench::file(const std::string& name, const std::string& text) const 
 
 void Bench::start_daemon() {
   daemon_.reset();
-  daemon_ = std::make_unique<Daemon>(files_, folder_.path());
+  daemon_ = std::make_unique<Daemon>(files_, folder_.path(), simulator_->usb_environment());
 }
 
 void Bench::bring_up_daemon() {

@@ -33,10 +33,21 @@ std::vector<std::string> goniod_arguments(const DaemonFiles& files, const std::s
   return line;
 }
 
-Daemon::Daemon(const DaemonFiles& files, const std::string& folder)
+namespace {
+
+std::vector<std::string> with_environment(const std::vector<std::string>& settings, std::vector<std::string> command) {
+  if (settings.empty()) return command;
+  command.insert(command.begin(), settings.begin(), settings.end());
+  command.insert(command.begin(), "/usr/bin/env");
+  return command;
+}
+
+}  // namespace
+
+Daemon::Daemon(const DaemonFiles& files, const std::string& folder, const std::vector<std::string>& environment)
     : ready_file_(without_old(folder + "/goniod.ready")),
       log_(folder + "/goniod.log"),
-      process_(goniod_arguments(files, "127.0.0.1:0", ready_file_), log_) {}
+      process_(with_environment(environment, goniod_arguments(files, "127.0.0.1:0", ready_file_)), log_) {}
 
 bool Daemon::has_ready_file() const {
   return std::filesystem::exists(ready_file_);

@@ -23,7 +23,8 @@ struct DaemonFiles {
 class Daemon {
  public:
   /// Starts it and does not wait. Its log in `folder` gathers what several daemons say, one after the other.
-  Daemon(const DaemonFiles& files, const std::string& folder);
+  /// `environment`: settings as NAME=VALUE beside this process' own.
+  Daemon(const DaemonFiles& files, const std::string& folder, const std::vector<std::string>& environment = {});
 
   /// Waits until REST answers. Throws std::runtime_error, with what the program said.
   void wait_until_ready();

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,17 @@ std::string own_camera_address() {
 std::string made(const std::string& folder) {
   std::filesystem::create_directories(folder);
   return folder;
+}
+
+// As a simulator that has moved and exposed so often left its folder.
+std::string with_history(const std::string& state_folder, long history) {
+  if (history == 0) return state_folder;
+  const json state{
+      {"boot_counter", 1},        {"positions", json::array()}, {"moves", history},        {"exposures", history},
+      {"lit_exposures", history}, {"scene_time_s", 0.0},        {"places", json::array()}, {"stage_port", 0},
+      {"camera_address", ""}};
+  write_text(state_folder + "/state.json", state.dump());
+  return state_folder;
 }
 
 int connect_to(const std::string& path) {
@@ -65,8 +77,8 @@ std::string exchange(const std::string& path, const std::string& line) {
 }  // namespace
 
 Simulator::Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed,
-                     const std::string& stage_wire)
-    : state_(made(folder + "/bench")),
+                     const std::string& stage_wire, long history)
+    : state_(with_history(made(folder + "/bench"), history)),
       log_(folder + "/goniosim.log"),
       process_({kGoniosim, scene_file, "--state", state_, "--seed", std::to_string(seed), "--camera-address",
                 own_camera_address(), "--stage-wire", stage_wire},
@@ -85,6 +97,20 @@ std::string Simulator::ask(const std::string& line) const {
 void Simulator::order(const std::string& line) const {
   const std::string answer = ask(line);
   if (!json::parse(answer).value("ok", false)) throw std::runtime_error("goniosim refused " + line + ": " + answer);
+}
+
+std::vector<std::string> Simulator::usb_environment() const {
+  std::vector<std::string> settings;
+  const json ready = json::parse(text_of(state_ + "/ready"));
+  for (const auto& [name, value] : ready.at("usb_environment").items()) {
+    settings.push_back(name + "=" + value.get<std::string>());
+  }
+  // A program with the address sanitizer in it wants to come first; what is put before it here is no rival.
+  const char* set = std::getenv("ASAN_OPTIONS");
+  if (!settings.empty()) {
+    settings.push_back(std::string("ASAN_OPTIONS=verify_asan_link_order=0:") + (set == nullptr ? "" : set));
+  }
+  return settings;
 }
 
 SeenStage Simulator::stage() const {

@@ -48,13 +48,17 @@ struct SeenExposures {
 /// what the program said, when it does not come up or does not answer.
 class Simulator {
  public:
-  /// Everything it writes lies below `folder`. It has a camera address of its own.
+  /// Everything it writes lies below `folder`. It has a camera address of its own. `history`: moves and exposures of
+  /// earlier runs, after which the noise goes on.
   Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed,
-            const std::string& stage_wire = "tcp");
+            const std::string& stage_wire = "tcp", long history = 0);
 
   [[nodiscard]] const std::string& state_folder() const { return state_; }
   [[nodiscard]] std::string instrument_file() const { return state_ + "/instrument.toml"; }
   [[nodiscard]] std::string reference_folder() const { return state_ + "/reference"; }
+
+  /// What a daemon needs in its environment to see the simulator's USB, each as NAME=VALUE; empty without one.
+  [[nodiscard]] std::vector<std::string> usb_environment() const;
 
   [[nodiscard]] SeenStage stage() const;
   [[nodiscard]] SeenExposures exposures() const;

@@ -109,5 +109,68 @@ TEST(ReferenceToml, IsReadByTheDaemonAsTheUndrawnStandard) {
   EXPECT_NEAR(read->table().value(node), SpectralonShape()(node), 5e-6) << "five digits are written";
 }
 
+Scene scene_with_meters() {
+  Scene scene = full_scene();
+  RadiometerSpec detector = quiet_radiometer();
+  detector.serial = "PM-1";
+  detector.u_range = 0.001;
+  for (RadiometerRange& range : detector.ranges) range.noise = 1e-4;
+  RadiometerSpec monitor = quiet_radiometer();
+  monitor.serial = "PM-2";
+  monitor.place = RadiometerPlace::Monitor;
+  scene.radiometers = {detector, monitor};
+  return scene;
+}
+
+TEST(InstrumentToml, DescribesRadiometersInBothPlaces) {
+  const auto read = daemon::parse_instrument(instrument_toml(scene_with_meters(), {}), "instrument.toml");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  ASSERT_TRUE(read->detector.power && read->monitor);
+  EXPECT_EQ(read->detector.power->meter.serial, "PM-1");
+  EXPECT_EQ(read->detector.power->ranges_w, (std::vector{1e-2, 1e-3, 1e-4, 1e-5, 1e-6})) << "the largest first";
+  EXPECT_NEAR(in_seconds(read->detector.power->reading_time()), 0.03 / 40.0, 1e-8);
+  EXPECT_TRUE(read->detector.power->zero);
+  EXPECT_FALSE(read->has_gate());
+  ASSERT_TRUE(read->model.detector.power);
+  EXPECT_EQ(read->model.detector.power->noise, 1e-4);
+  EXPECT_EQ(read->model.detector.power->u_range, 0.001);
+  EXPECT_EQ(read->monitor->meter.serial, "PM-2");
+  EXPECT_EQ(read->monitor->range_w, 1e-2) << "1 mW and room for its drift";
+  EXPECT_DOUBLE_EQ(read->lamp.high, 5e-3) << "in the monitor's unit";
+}
+
+TEST(InstrumentToml, LeavesTheCameraItsGateBesideARadiometerInTheLampsLight) {
+  Scene scene = scene_with_meters();
+  scene.radiometers.erase(scene.radiometers.begin());
+
+  const auto read = daemon::parse_instrument(instrument_toml(scene, {}), "instrument.toml");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  EXPECT_TRUE(read->has_gate());
+  EXPECT_FALSE(read->detector.power);
+  EXPECT_TRUE(read->monitor);
+}
+
+TEST(InstrumentToml, IsRefusedWhenARadiometerHasNoMonitorBesideIt) {
+  Scene scene = scene_with_meters();
+  scene.radiometers.pop_back();
+
+  const auto read = daemon::parse_instrument(instrument_toml(scene, {}), "instrument.toml");
+
+  ASSERT_FALSE(read.has_value());
+  EXPECT_NE(describe(read.error()).find("[monitor]"), std::string::npos) << describe(read.error());
+}
+
+TEST(InstrumentToml, IsRefusedWhenBothPlacesNameOneMeter) {
+  Scene scene = scene_with_meters();
+  scene.radiometers[1].serial = scene.radiometers[0].serial;
+
+  const auto read = daemon::parse_instrument(instrument_toml(scene, {}), "instrument.toml");
+
+  ASSERT_FALSE(read.has_value());
+  EXPECT_NE(describe(read.error()).find("is the detector's"), std::string::npos) << describe(read.error());
+}
+
 }  // namespace
 }  // namespace gonio::sim::test

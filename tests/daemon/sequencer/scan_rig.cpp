@@ -141,6 +141,7 @@ std::int64_t ScanRig::count(const std::string& query) {
 void ScanRig::execute(const Request& request) {
   if (const auto* to_stage = std::get_if<StageRequest>(&request)) return execute_stage(*to_stage);
   if (const auto* to_detector = std::get_if<DetectorRequest>(&request)) return execute_detector(*to_detector);
+  if (const auto* to_monitor = std::get_if<MonitorRequest>(&request)) return execute_monitor(*to_monitor);
   execute_store(std::get<StoreRequest>(request));
 }
 
@@ -162,6 +163,7 @@ void ScanRig::execute_store(const StoreRequest& request) {
 
 drivers::StageState ScanRig::look() {
   world.stage.at = clock_.now();
+  for (auto& axis : world.stage.axes) axis.counts = static_cast<std::int32_t>(std::lround(axis.position * 10'000.0));
   world.stage.moving = clock_.now() < world.moving_until;
   world.stage.gate.open = clock_.now() < world.gate_open_until;
   return world.stage;
@@ -221,10 +223,63 @@ void ScanRig::move(const MoveTo& to) {
 }
 
 void ScanRig::execute_detector(const DetectorRequest& request) {
-  if (const auto* take = std::get_if<TakeFrame>(&request)) return take_frame(*take);
+  if (const auto* take = std::get_if<TakeFrame>(&request)) return take->power ? take_power(*take) : take_frame(*take);
+  if (const auto* at_zero = std::get_if<ZeroDetector>(&request)) return zero(*at_zero);
   const Ticket ticket = std::get<PrepareDetector>(request).ticket;
   if (const auto error = world.camera_open_error()) return tell(kWire, DetectorAnswer{ticket, failure(*error)});
   tell(kWire, DetectorAnswer{ticket, drivers::DetectorIdentity{.vendor = "test"}});
+}
+
+void ScanRig::zero(const ZeroDetector& request) {
+  ++world.zeros;
+  world.zeroed_in_the_dark = world.stage.detector_shutter == stage::ShutterState::Closed;
+  tell(milliseconds(500), DetectorAnswer{request.ticket, drivers::DetectorIdentity{.vendor = "test"}});
+}
+
+// One pixel in parts of the range; 1.1 of it is an overload.
+void ScanRig::take_power(const TakeFrame& take) {
+  EXPECT_FALSE(watched_) << "no camera gates the stage";
+  const double theta_r = world.stage.axes[stage::index_of(Axis::ThetaR)].position;
+  const bool is_reference = world.stage.axes[stage::index_of(Axis::Carriage)].position > 60.0;
+  const bool is_lit = world.stage.detector_shutter == stage::ShutterState::Open;
+  const double watts = world.zero_w + (is_lit ? world.power_w(theta_r, is_reference) : 0.0);
+  ++world.exposures;
+  const double share = watts / take.power->range_w;
+  FrameSummary frame;
+  frame.settings = take.settings;
+  frame.region = {.n = 1, .mean = share, .saturated = share > 1.1 ? 1U : 0U};
+  const Instant start = clock_.now();
+  if (share <= 1.1) {
+    frame.power = PowerRecord{.reading = {.mean_w = watts,
+                                          .standard_error_w = 1e-9,
+                                          .samples = 10,
+                                          .averages = 1,
+                                          .range_w = take.power->range_w,
+                                          .wavelength = take.power->wavelength},
+                              .started = start,
+                              .ended = start + take.settings.exposure};
+  }
+  world.during_reading();
+  if (const auto error = world.frame_error()) return tell(milliseconds(5), FrameAnswer{take.ticket, failure(*error)});
+  tell(take.settings.exposure + milliseconds(2), FrameAnswer{take.ticket, frame});
+}
+
+void ScanRig::execute_monitor(const MonitorRequest& request) {
+  if (const auto* prepare = std::get_if<PrepareMonitor>(&request)) {
+    return tell(kWire, MonitorReady{prepare->ticket, drivers::DetectorIdentity{.vendor = "test"}});
+  }
+  const auto& take = std::get<TakeMonitor>(request);
+  ++world.monitor_readings;
+  if (const auto error = world.monitor_error()) return tell(kWire, MonitorAnswer{take.ticket, failure(*error)});
+  const PowerRecord reading{.reading = {.mean_w = world.monitor_w,
+                                        .standard_error_w = 1e-7,
+                                        .samples = 8,
+                                        .averages = 1,
+                                        .range_w = 1e-2,
+                                        .wavelength = nanometres(568.0)},
+                            .started = clock_.now(),
+                            .ended = clock_.now() + take.window};
+  tell(take.window + milliseconds(3), MonitorAnswer{take.ticket, reading});
 }
 
 FrameSummary ScanRig::frame_of(const drivers::ExposureSettings& settings) {

@@ -30,6 +30,15 @@ struct ScriptedInstrument {
   Duration frame_error_after = std::chrono::milliseconds(100);  ///< the gate's error comes after 500 ms
   std::function<std::optional<Error>()> camera_open_error = [] { return std::nullopt; };
   double monitor = 1.0;
+  // Of a radiometer in the camera's place, and of one in the lamp's light.
+  double zero_w = 3e-7;  ///< in the dark
+  std::function<double(double theta_r_deg, bool is_reference)> power_w = [](double, bool) { return 4e-5; };
+  std::function<std::optional<Error>()> monitor_error = [] { return std::nullopt; };
+  double monitor_w = 1e-3;
+  int zeros = 0;  ///< commanded
+  bool zeroed_in_the_dark = true;
+  int monitor_readings = 0;
+  std::function<void()> during_reading = [] {};  ///< while the light is taken
 };
 
 /// Sequencer, real store and scripted instrument on a manual clock. Each request executed and each answer delivered is
@@ -76,9 +85,12 @@ class ScanRig {
   void execute(const Request& request);
   void execute_stage(const StageRequest& request);
   void execute_detector(const DetectorRequest& request);
+  void execute_monitor(const MonitorRequest& request);
   void execute_store(const StoreRequest& request);
   void move(const MoveTo& move);
   void take_frame(const TakeFrame& take);
+  void take_power(const TakeFrame& take);
+  void zero(const ZeroDetector& request);
   [[nodiscard]] drivers::StageState look();
   [[nodiscard]] FrameSummary frame_of(const drivers::ExposureSettings& settings);
 

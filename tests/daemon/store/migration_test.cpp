@@ -71,5 +71,20 @@ TEST_F(OldStore, OfVersion1GainsReductionsAndTemperaturesThatMayBeUnknown) {
             0);
 }
 
+TEST_F(OldStore, OfVersion1GetsATableForRadiometersAndKeepsItsReadings) {
+  write("version_1.sql");
+  const auto readings = [this] {
+    SQLite::Database file(path_, SQLite::OPEN_READONLY);
+    return file.execAndGet("SELECT count(*) FROM reading").getInt();
+  };
+  const int before = readings();
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  EXPECT_EQ(readings(), before);
+  SQLite::Database file(path_, SQLite::OPEN_READONLY);
+  EXPECT_EQ(file.execAndGet("SELECT count(*) FROM power_reading").getInt(), 0);
+}
+
 }  // namespace
 }  // namespace gonio::daemon

@@ -357,5 +357,32 @@ TEST_F(Store, NamesOfStatesHoldsAndTargetsGoBothWays) {
   EXPECT_EQ(scan_state_from_name("asleep"), std::nullopt);
 }
 
+TEST_F(Store, GivesBackWhatARadiometerSaidAndKeepsTheMonitorsWordBesideIt) {
+  const ScanId id = accept_scan();
+  NewAttempt made = attempt(id, 0);
+  const auto power = [&](double watts, double range_w) {
+    return PowerRecord{.reading = {.mean_w = watts,
+                                   .standard_error_w = 1e-9,
+                                   .samples = 10,
+                                   .averages = 3,
+                                   .range_w = range_w,
+                                   .wavelength = nanometres(568.0)},
+                       .started = clock_.now(),
+                       .ended = clock_.now() + std::chrono::milliseconds(30)};
+  };
+  made.readings[0].power = power(2e-5, 1e-4);
+  made.readings[0].monitor_power = power(1e-3, 1e-2);
+  ASSERT_TRUE(commit({made}));
+
+  const auto readings = open_reader()->readings(id, test::bench_instrument().stage);
+
+  ASSERT_TRUE(readings) << describe(readings.error());
+  ASSERT_EQ(readings->readings.size(), 1U);
+  EXPECT_EQ(readings->readings[0].frames.at(0).power, made.readings[0].power->reading);
+  EXPECT_EQ(count("SELECT ended_boottime_ns - started_boottime_ns FROM power_reading WHERE role = 'monitor' AND "
+                  "mean_w = 1e-3 AND range_w = 1e-2"),
+            30'000'000);
+}
+
 }  // namespace
 }  // namespace gonio::daemon

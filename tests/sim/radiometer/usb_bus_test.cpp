@@ -178,6 +178,50 @@ TEST_P(UsbBusTest, IsSearchedForTheSerialNumber) {
   EXPECT_EQ(absent.open().error().code, ErrorCode::Unreachable);
 }
 
+// Detector and monitor: two devices of one kind, told apart by their serial numbers.
+TEST(UsbBusWithTwoMeters, LetsEachDriverFindItsOwnWhichStaysWhenTheOtherGoes) {
+  SystemClock clock;
+  LiveInstrument instrument{quiet_scene(), {}, clock};
+  RadiometerSpec bright = quiet_radiometer();
+  bright.place = RadiometerPlace::Monitor;
+  RadiometerSpec dim = bright;
+  dim.serial = "SIM-PM-02";
+  dim.watts = 5e-4;
+  LiveRadiometer first{instrument, bright};
+  LiveRadiometer second{instrument, dim};
+  UsbBus bus({&first, &second});
+  ASSERT_TRUE(bus.plug(0));
+  ASSERT_TRUE(bus.plug(1));
+  const auto config = [](const std::string& serial) {
+    return drivers::ScpiRadiometerConfig{
+        .serial = serial,
+        .settings = {.wavelength = nanometres(568.0), .range_w = 1e-2, .averages = 1, .samples = 4},
+        .range_settle = 5ms,
+        .reply_margin = kPatience,
+        .transfer_timeout = kPatience};
+  };
+  const auto usb = [](const std::string& serial) {
+    return drivers::LibusbConfig{
+        .vendor_id = UsbtmcFunction::kVendor, .product_id = UsbtmcFunction::kProduct, .serial = serial};
+  };
+  drivers::LibusbUsbtmcLink link_a(usb("SIM-PM-01")), link_b(usb("SIM-PM-02"));
+  drivers::ScpiRadiometer a(link_a, config("SIM-PM-01"), clock), b(link_b, config("SIM-PM-02"), clock);
+  const auto take = [](drivers::ScpiRadiometer& from) {
+    EXPECT_TRUE(from.trigger());
+    const auto taken = from.collect(kPatience);
+    EXPECT_TRUE(taken && *taken);
+    return taken && *taken ? (*taken)->mean_w : 0.0;
+  };
+
+  EXPECT_NEAR(take(a), 1e-3, 1e-12);
+  EXPECT_NEAR(take(b), 5e-4, 1e-12);
+  bus.unplug(0);
+  const auto gone = a.trigger();
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().code, ErrorCode::Unreachable) << describe(gone.error());
+  EXPECT_NEAR(take(b), 5e-4, 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(StatusByte, UsbBusTest, testing::Bool(), [](const auto& with_interrupt) {
   return with_interrupt.param ? "OnTheInterruptEndpoint" : "InTheControlAnswer";
 });

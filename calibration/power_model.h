@@ -1,0 +1,20 @@
+#pragma once
+
+#include "calibration/power_reading.h"
+
+namespace gonio::calibration {
+
+/// What calibration knows of a radiometer, all k = 1. Its linearity is DetectorModel's, full scale that of each range.
+struct PowerModel {
+  double noise = 0.0;    ///< standard deviation of one average, as part of the range's full scale; random
+  double u_range = 0.0;  ///< relative, of each range's gain; cancels between readings in one range
+  double u_zero = 0.0;   ///< part of the range's full scale: what the zero may wander between two darks; shared
+};
+
+/// Of the mean of a reading, W^2. By the model, not by the scatter of a handful of samples.
+[[nodiscard]] constexpr double noise_variance_w2(const PowerModel& model, const PowerReading& reading) {
+  const double one_average = model.noise * reading.range_w;
+  return one_average * one_average / (static_cast<double>(reading.samples) * static_cast<double>(reading.averages));
+}
+
+}  // namespace gonio::calibration
