@@ -13,6 +13,7 @@
 #include "base/toml_reader.h"
 #include "daemon/config/configuration_hash.h"
 #include "daemon/config/drives_section.h"
+#include "daemon/config/keep_out_section.h"
 #include "daemon/config/kinematics_section.h"
 #include "daemon/config/power_meter_section.h"
 
@@ -53,6 +54,10 @@ drivers::AxisConfig read_axis(TomlReader& table, std::string_view unit) {
   axis.acceleration = table.number(key("acceleration", "_per_s2"), positive);
   axis.settle = time(table, "settle_s", kTime);
   axis.window = table.number(key("window"), positive);
+  static constexpr std::array<std::string_view, 3> kApproaches{"any", "from below", "from above"};  // drivers::Approach
+  axis.approach = static_cast<drivers::Approach>(table.choice_or("approach", 0, kApproaches));
+  const NumberRange more_than_window{.least = axis.window, .unit = unit};
+  if (axis.approach != drivers::Approach::Any) axis.overrun = table.number(key("backlash"), more_than_window);
   if (axis.low >= axis.high) {
     table.fail(key("low"), ErrorCode::InvalidInput, fmt::format("value {} {}", axis.low, unit),
                fmt::format("below {} = {} {}", key("high"), axis.high, unit));
@@ -75,6 +80,7 @@ drivers::StageConfig read_stage_config(TomlReader& table) {
   }
   read_kinematics(table, stage);
   read_stage_kind(table, stage);
+  read_keep_out(table, stage);
   return stage;
 }
 

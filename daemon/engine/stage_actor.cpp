@@ -1,6 +1,7 @@
 #include "daemon/engine/stage_actor.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -63,7 +64,9 @@ std::optional<Instant> StageActor::step(Instant now) {
 
 Result<drivers::StageState> StageActor::look() {
   Result<drivers::StageState> state = stage_.read_state();
-  if (state) boot_counter_ = state->boot_counter;
+  if (!state) return state;
+  if (boot_counter_ && *boot_counter_ != state->boot_counter) slack_taken_up_.fill(false);
+  boot_counter_ = state->boot_counter;
   return state;
 }
 
@@ -87,14 +90,57 @@ void StageActor::begin(const StageRequest& request, Instant now) {
 Result<StageActor::Job> StageActor::start(const MoveTo& request) {
   const Result<drivers::StageState> before = look();
   if (!before) return failure(before.error());
-  Job job{request.ticket, {}, before->at};
+  Job job{.ticket = request.ticket, .watches = {}, .next_look = before->at};
+  if (!names_an_axis(request.target)) {
+    GONIO_TRY(add_shutters(job, request, *before));
+    return job;
+  }
+  GONIO_TRY(check_arms_are_known(*before, request.target));
+  auto legs = drivers::plan_route(config_, drivers::positions_of(*before), request.target, slack_taken_up_);
+  if (!legs) return failure(legs.error());
+  job.ends = legs->back();
+  job.legs.assign(legs->begin(), legs->end());
+  job.epoch = request.epoch;
+  job.stop_count = before->stop_count;
   GONIO_TRY(add_shutters(job, request, *before));
-  if (!names_an_axis(request.target)) return job;
-  const Result<drivers::MotionToken> token = stage_.start_move(request.target, request.epoch);
-  if (!token) return failure(token.error());
-  job.watches.push_back(
-      watch_of(drivers::MoveTask(config_, *before, request.target, *token, request.epoch, before->at)));
+  job.watches.emplace_back();  // the motion's
+  GONIO_TRY(start_leg(job, *before));
   return job;
+}
+
+// Whether a way is clear can be said only of arms whose place is known.
+Result<void> StageActor::check_arms_are_known(const drivers::StageState& before,
+                                              const drivers::MotionTarget& target) const {
+  if (!config_.keep_out) return {};
+  for (const stage::Axis axis : {stage::Axis::ThetaI, stage::Axis::ThetaR, stage::Axis::PhiR, stage::Axis::PhiI}) {
+    if (before.axes[stage::index_of(axis)].homed) continue;
+    return failure({.code = ErrorCode::NotHomed,
+                    .device = "stage",
+                    .tried = drivers::motion_text(target),
+                    .seen = std::string(stage::axis_name(axis)) + " is not homed",
+                    .limit = "the arms' places known, to keep them apart"});
+  }
+  return {};
+}
+
+Result<void> StageActor::start_leg(Job& job, const drivers::StageState& before) {
+  const drivers::MotionTarget leg = job.legs.front();
+  if (before.stop_count != job.stop_count) {
+    return failure({.code = ErrorCode::Stopped,
+                    .device = "stage",
+                    .tried = drivers::motion_text(leg),
+                    .seen = "stop count " + std::to_string(before.stop_count),
+                    .limit = "it was " + std::to_string(job.stop_count) + " when the move began"});
+  }
+  job.legs.pop_front();
+  for (std::size_t a = 0; a < leg.size(); ++a) slack_taken_up_[a] = slack_taken_up_[a] && !leg[a];
+  const Result<drivers::MotionToken> token = stage_.start_move(leg, job.epoch);
+  if (!token) return failure(token.error());
+  using Ending = drivers::MoveTask::Ending;
+  job.watches.back() = watch_of(drivers::MoveTask(config_, before, leg, *token, job.epoch, before.at,
+                                                  job.legs.empty() ? Ending::Settle : Ending::Rest));
+  job.next_look = before.at;
+  return {};
 }
 
 Result<void> StageActor::add_shutters(Job& job, const MoveTo& request, const drivers::StageState& before) {
@@ -109,6 +155,7 @@ Result<void> StageActor::add_shutters(Job& job, const MoveTo& request, const dri
 Result<StageActor::Job> StageActor::start(const Home& request) {
   const Result<drivers::StageState> before = look();
   if (!before) return failure(before.error());
+  slack_taken_up_.fill(false);
   const Result<drivers::MotionToken> token = stage_.start_homing(request.epoch);
   if (!token) return failure(token.error());
   return Job{
@@ -138,9 +185,20 @@ void StageActor::advance() {
     job_->next_look = *next;
     return;
   }
+  if (all_done && !job_->legs.empty()) {
+    const Result<void> started = start_leg(*job_, *seen);
+    return started ? void() : finish(failure(started.error()));
+  }
+  finish(all_done ? seen : failure(std::move(all_done).error()));
+}
+
+void StageActor::finish(const Result<drivers::StageState>& state) {
+  for (std::size_t a = 0; state && a < slack_taken_up_.size(); ++a) {
+    if (job_->ends[a]) slack_taken_up_[a] = true;
+  }
   const Ticket ticket = job_->ticket;
   job_.reset();
-  post_({ticket, all_done ? seen : failure(std::move(all_done).error())});
+  post_({ticket, state});
 }
 
 }  // namespace gonio::daemon

@@ -10,12 +10,16 @@
 #include "base/result.h"
 #include "daemon/sequencer/messages.h"
 #include "drivers/motion/motion_progress.h"
+#include "drivers/motion/route.h"
 #include "drivers/stage.h"
 #include "drivers/stage_config.h"
 
 namespace gonio::daemon {
 
-/// Drives the stage: one request at a time, in the order of asking, each answered once; a look is answered at once,
+/// Drives the stage. A move is planned from where the stage really stands (`plan_route`): it may take several legs,
+/// each begun when the one before has come to rest, all of one epoch. A STOP between two legs ends the move.
+///
+/// One request at a time, in the order of asking, each answered once; a look is answered at once,
 /// also while a motion is under way. Blocks for a few link transactions at most, never for a motion. Threads: one.
 class StageActor {
  public:
@@ -36,8 +40,12 @@ class StageActor {
   /// A request that waits for the stage: done when all its conditions hold in one look.
   struct Job {
     Ticket ticket = 0;
-    std::vector<Watch> watches;
+    std::vector<Watch> watches;  ///< of a move, the motion's is the last
     Instant next_look{};
+    std::deque<drivers::MotionTarget> legs = {};  ///< of a move, those to come
+    drivers::Epoch epoch = 0;
+    std::uint16_t stop_count = 0;     ///< of the stage when the move began
+    drivers::MotionTarget ends = {};  ///< the axes of a move and where they will be
   };
 
   [[nodiscard]] Result<drivers::StageState> look();
@@ -46,7 +54,12 @@ class StageActor {
   [[nodiscard]] Result<Job> start(const Home& request);
   [[nodiscard]] Result<Job> start(const ResetStage& request);
   [[nodiscard]] Result<void> add_shutters(Job& job, const MoveTo& request, const drivers::StageState& before);
+  [[nodiscard]] Result<void> check_arms_are_known(const drivers::StageState& before,
+                                                  const drivers::MotionTarget& target) const;
+  /// Begins the next leg of a move from a look at rest. Errors: Stopped, those of Stage::start_move.
+  [[nodiscard]] Result<void> start_leg(Job& job, const drivers::StageState& before);
   void advance();
+  void finish(const Result<drivers::StageState>& state);
 
   drivers::Stage& stage_;
   const drivers::StageConfig& config_;
@@ -54,6 +67,7 @@ class StageActor {
   std::deque<StageRequest> waiting_;
   std::optional<Job> job_;
   std::optional<std::uint32_t> boot_counter_;  ///< as last seen
+  drivers::SlackTakenUp slack_taken_up_{};     ///< what moves that ended well have left
 };
 
 }  // namespace gonio::daemon

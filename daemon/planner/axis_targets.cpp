@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/planner/estimate.h"
 #include "daemon/planner/planner.h"
+#include "drivers/keep_out/path_conflict.h"
 #include "drivers/kinematics/kinematics.h"
 
 namespace gonio::daemon {
@@ -47,12 +49,26 @@ Result<double> filter_slot(const Instrument& instrument, Wavelength wavelength) 
                        .limit = fmt::format("filters with centroids at {} nm", known.empty() ? "no" : known)});
 }
 
+const drivers::MotionTarget& clear_way(const std::vector<drivers::MotionTarget>& ways, const Instrument& instrument,
+                                       const stage::PerAxis<double>& standing) {
+  if (!instrument.stage.keep_out) return ways.front();
+  const auto clear =
+      std::ranges::find_if(ways, [&](const auto& way) { return step_time(instrument, standing, way).has_value(); });
+  return clear == ways.end() ? ways.front() : *clear;
+}
+
 }  // namespace
 
 bool is_in_shadow(const Geometry& g, const Shadow& shadow) {
   const double reach = (shadow.detector_head_radius + shadow.source_head_radius).si() /
                        std::min(shadow.detector_arm, shadow.source_arm).si();
   return phase_angle(g).si() < std::asin(std::min(1.0, reach));
+}
+
+bool is_blocked(const Geometry& g, const Instrument& instrument) {
+  if (is_in_shadow(g, instrument.shadow)) return true;
+  const auto& keep_out = instrument.stage.keep_out;
+  return keep_out && phase_angle(g) < keep_out->least_separation() + drivers::kPathResolution;
 }
 
 stage::PerAxis<double> home_position(const Instrument& instrument) {
@@ -70,7 +86,7 @@ Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelen
   if (!ways) return failure(ways.error());
   const auto slot = filter_slot(instrument, wavelength);
   if (!slot) return failure(slot.error());
-  drivers::MotionTarget target = ways->front();
+  drivers::MotionTarget target = clear_way(*ways, instrument, standing);
   target[stage::index_of(Axis::FilterWheel)] = *slot;
   return target;
 }
@@ -94,7 +110,11 @@ Result<void> check_move(const drivers::MotionTarget& target, const stage::PerAxi
   }
   const bool arms_move = target[0] || target[1] || target[2] || target[3];
   const Geometry g = drivers::directions(instrument.stage.kinematics, there);
-  if (!arms_move || !is_in_shadow(g, instrument.shadow)) return {};
+  if (!arms_move) return {};
+  if (!is_in_shadow(g, instrument.shadow)) {
+    const auto way = step_time(instrument, standing, target);
+    return way ? Result<void>() : failure(way.error());
+  }
   const double xi_deg = in_degrees(phase_angle(g));
   return failure(Error{.code = ErrorCode::Blocked,
                        .device = "stage",

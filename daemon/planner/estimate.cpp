@@ -1,5 +1,7 @@
 #include "daemon/planner/estimate.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -7,6 +9,8 @@
 
 #include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/planner.h"
+#include "drivers/motion/route.h"
+#include "drivers/motion/route_time.h"
 #include "drivers/motion/travel_time.h"
 
 namespace gonio::daemon {
@@ -18,6 +22,15 @@ using stage::Axis;
 // Of one frame beyond its exposure: transfer, reduction, the look at the gate. Only the estimate uses it.
 constexpr Duration kReadTime = std::chrono::milliseconds(5);
 constexpr int kDarkFrames = 4;  // of each rung, in the estimate
+
+Error at_point(const ScanPoint& point, Error error) {
+  const Geometry& g = point.geometry;
+  error.device = "plan";
+  error.tried = fmt::format("come to point {} (theta_i {:g}, theta_r {:g}, phi_r {:g} deg): {}", point.index,
+                            in_degrees(g.theta_i), in_degrees(g.theta_r), in_degrees(g.phi_r), error.tried);
+  error.where = InputLocation{.field = "geometry"};
+  return error;
+}
 
 class Walk {
  public:
@@ -34,17 +47,19 @@ class Walk {
     visit_dark();
   }
 
-  void visit(const ScanPoint& point, Length carriage) {
+  Result<void> visit(const ScanPoint& point, Length carriage) {
     auto target = axis_targets(point.geometry, point.wavelength, instrument_, standing_);
     assert(target);  // the planner has checked every direction
     (*target)[stage::index_of(Axis::Carriage)] = in_millimetres(carriage);
-    const StepTime step = step_time(instrument_, standing_, *target);
-    time_.move += step.move;
-    time_.settle += step.settle;
+    const auto step = step_time(instrument_, standing_, *target);
+    if (!step) return failure(at_point(point, step.error()));
+    time_.move += step->move;
+    time_.settle += step->settle;
     time_.expose += exposure_;
     time_.read += frames_ * kReadTime;
     for (std::size_t a = 0; a < stage::kAxisCount; ++a) standing_[a] = (*target)[a].value_or(standing_[a]);
     if (plan_.dark_every > Duration::zero() && time_.total() - last_dark_ >= plan_.dark_every) visit_dark();
+    return {};
   }
 
   void visit_dark() {
@@ -73,29 +88,33 @@ Duration travel_time(const drivers::AxisConfig& axis, double way) {
   return drivers::travel_time(std::abs(way), axis.speed, axis.acceleration);
 }
 
-StepTime step_time(const Instrument& instrument, const stage::PerAxis<double>& from, const drivers::MotionTarget& to) {
-  StepTime step;
+Result<StepTime> step_time(const Instrument& instrument, const stage::PerAxis<double>& from,
+                           const drivers::MotionTarget& to) {
+  drivers::SlackTakenUp taken_up{};
+  taken_up.fill(true);
+  const auto legs = drivers::plan_route(instrument.stage, from, to, taken_up);
+  if (!legs) return failure(legs.error());
+  StepTime step{.move = drivers::route_time(instrument.stage, from, *legs)};
   for (const Axis axis : stage::kAllAxes) {
     const std::size_t a = stage::index_of(axis);
-    if (!to[a] || *to[a] == from[a]) continue;
-    step.move = std::max(step.move, travel_time(instrument.stage.axis(axis), *to[a] - from[a]));
-    step.settle = std::max(step.settle, instrument.stage.axis(axis).settle);
+    const bool moves = (to[a] && *to[a] != from[a]) || (legs->size() > 1 && legs->back()[a]);
+    if (moves) step.settle = std::max(step.settle, instrument.stage.axis(axis).settle);
   }
   return step;
 }
 
-TimeParts estimate(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned) {
+Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned) {
   Walk walk(plan, instrument);
   const Duration pass = plan.block / 2;  // there and back: partners lie within the whole block
   for (std::size_t first = 0; first < planned.order.size();) {
     const Duration started = walk.time().total();
     std::size_t end = first;
     while (end < planned.order.size() && (end == first || walk.time().total() - started < pass)) {
-      walk.visit(planned.points[static_cast<std::size_t>(planned.order[end])], instrument.carriage.sample);
+      GONIO_TRY(walk.visit(planned.points[static_cast<std::size_t>(planned.order[end])], instrument.carriage.sample));
       ++end;
     }
     for (std::size_t k = end; k-- > first;) {
-      walk.visit(planned.points[static_cast<std::size_t>(planned.order[k])], instrument.carriage.reference);
+      GONIO_TRY(walk.visit(planned.points[static_cast<std::size_t>(planned.order[k])], instrument.carriage.reference));
     }
     first = end;
   }

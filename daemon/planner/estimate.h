@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/result.h"
 #include "daemon/config/instrument.h"
 #include "daemon/planner/planned_scan.h"
 #include "drivers/stage.h"
@@ -8,18 +9,21 @@
 namespace gonio::daemon {
 
 /// The time of a planned scan, dark visits included, by the instrument's own speeds: `planned.points` and
-/// `planned.order` are read. Every direction must be within the axes' limits (asserted).
-[[nodiscard]] TimeParts estimate(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned);
+/// `planned.order` are read. Every direction must be within the axes' limits (asserted). Detours and turning points
+/// count. Errors: Blocked (a point that the arms cannot come to from the one before, with the place on the path).
+[[nodiscard]] Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument,
+                                         const PlannedScan& planned);
 
 /// How long one axis needs from rest to rest; without settling.
 [[nodiscard]] Duration travel_time(const drivers::AxisConfig& axis, double way);
 
-/// How long the axes need together for one step, and how long they then settle: the slowest of those that move.
+/// How long the axes need together for one step, all its legs, and how long they then settle: the slowest of those that
+/// move. Axes are taken to rest with their slack taken up. Errors: those of drivers::plan_route.
 struct StepTime {
   Duration move{};
   Duration settle{};
 };
-[[nodiscard]] StepTime step_time(const Instrument& instrument, const stage::PerAxis<double>& from,
-                                 const drivers::MotionTarget& to);
+[[nodiscard]] Result<StepTime> step_time(const Instrument& instrument, const stage::PerAxis<double>& from,
+                                         const drivers::MotionTarget& to);
 
 }  // namespace gonio::daemon

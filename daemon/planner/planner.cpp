@@ -8,6 +8,7 @@
 #include "daemon/planner/estimate.h"
 #include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/measuring_order.h"
+#include "drivers/motion/route.h"
 
 namespace gonio::daemon {
 
@@ -107,10 +108,17 @@ class Expansion {
                     .wavelength = plan_.wavelengths[place[4]]};
     const auto target = axis_targets(point.geometry, point.wavelength, instrument_, home_);
     if (!target) return failure(named_by_the_plan(target.error(), point.geometry));
-    point.blocked = is_in_shadow(point.geometry, instrument_.shadow);
+    GONIO_TRY(check_approach(*target, point.geometry));
+    point.blocked = is_blocked(point.geometry, instrument_);
     planned_.points.push_back(point);
     places_.push_back(place);
     return {};
+  }
+
+  // An axis that turns past its target must be able to, wherever it comes from.
+  Result<void> check_approach(const drivers::MotionTarget& target, const Geometry& g) const {
+    const auto turns = drivers::check_approach(instrument_.stage, target);
+    return turns ? turns : failure(named_by_the_plan(turns.error(), g));
   }
 
   // The instrument's error, with the field of the plan that asked for it; where no axis is one of the plan's angles,
@@ -138,12 +146,13 @@ class Expansion {
     for (const ScanPoint& point : planned_.points) planned_.blocked += point.blocked ? 1 : 0;
     const auto count = static_cast<std::int64_t>(planned_.points.size());
     if (planned_.blocked == count) {
-      return failure(Error{.code = ErrorCode::AllPointsBlocked,
-                           .device = "plan",
-                           .tried = fmt::format("plan {} points", count),
-                           .seen = "every one in the shadow of the detector's head",
-                           .limit = "at least one point outside of the keep-out about retro-reflection",
-                           .where = InputLocation{.field = "geometry"}});
+      return failure(
+          Error{.code = ErrorCode::AllPointsBlocked,
+                .device = "plan",
+                .tried = fmt::format("plan {} points", count),
+                .seen = "every one in the shadow of the detector's head, or with the arms against each other",
+                .limit = "at least one point outside of the keep-out about retro-reflection",
+                .where = InputLocation{.field = "geometry"}});
     }
     planned_.planner_version = kPlannerVersion;
     planned_.items = 2 * (count - planned_.blocked);
@@ -153,7 +162,9 @@ class Expansion {
     for (ScanPoint& point : planned_.points) {
       if (point.blocked) point.rank = rank++;
     }
-    planned_.estimate = estimate(plan_, instrument_, planned_);
+    const auto time = estimate(plan_, instrument_, planned_);
+    if (!time) return failure(time.error());
+    planned_.estimate = *time;
     return std::move(planned_);
   }
 

@@ -12,24 +12,29 @@ namespace gonio::daemon {
 inline constexpr int kPlannerVersion = 1;
 
 /// The points of a plan on an instrument, in the order of measurement: a pure function, for the dry run and for the
-/// run. Errors: OutOfLimits (axis, value, limit, the plan's field), AllPointsBlocked, InvalidInput (a wavelength
+/// run. Errors: OutOfLimits (axis, value, limit, the plan's field), AllPointsBlocked, Blocked (a point that
+/// the arms cannot come to from the one before, with the place on the path), InvalidInput (a wavelength
 /// without a filter, an exposure that is none of the detector's, more than 10^7 points).
 [[nodiscard]] Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument);
 
 /// Whether the detector's head stands in the source's beam: xi < asin((r_d + r_s) / min(R_d, R_s)).
 [[nodiscard]] bool is_in_shadow(const Geometry& g, const Shadow& shadow);
 
+/// Whether a point may not be visited: it lies in the shadow, or nearer to retro than the arms may come to each other.
+[[nodiscard]] bool is_blocked(const Geometry& g, const Instrument& instrument);
+
 /// Where the axes stand after homing, as the dry run takes it: at zero, or at the limit nearest to it.
 [[nodiscard]] stage::PerAxis<double> home_position(const Instrument& instrument);
 
 /// Where the axes of a point go from `standing`: the turning axes by the stage's kinematics, the soonest of all ways
-/// within the limits, and the filter. Errors: OutOfLimits, InvalidInput (no filter).
+/// within the limits to which the arms have a clear way (the soonest of all if none has), and the filter. Errors:
+/// OutOfLimits, InvalidInput (no filter).
 [[nodiscard]] Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelength,
                                                          const Instrument& instrument,
                                                          const stage::PerAxis<double>& standing);
 
 /// Checks one move asked for by hand from where the stage stands. Errors: OutOfLimits, Blocked (it would end in the
-/// shadow).
+/// shadow, or the arms would meet on the way and no way round was found).
 [[nodiscard]] Result<void> check_move(const drivers::MotionTarget& target, const stage::PerAxis<double>& standing,
                                       const Instrument& instrument);
 

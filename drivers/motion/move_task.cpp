@@ -27,12 +27,13 @@ std::string motion_text(const MotionTarget& target) {
 }
 
 MoveTask::MoveTask(const StageConfig& config, const StageState& before, const MotionTarget& target, MotionToken token,
-                   Epoch epoch, Instant now)
+                   Epoch epoch, Instant now, Ending ending)
     : axes_(config.axes), target_(target), watch_(before, token, epoch, motion_text(target)), started_(now) {
   poll_ = kLongestPoll;
   for (const stage::Axis axis : stage::kAllAxes) {
     const std::size_t i = stage::index_of(axis);
     if (!target_[i]) continue;
+    if (ending == Ending::Rest) axes_[i].settle = Duration::zero();
     const AxisConfig& how = axes_[i];
     travel_ = std::max(travel_, travel_time(*target_[i] - before.axes[i].position, how.speed, how.acceleration));
     settle_ = std::max(settle_, how.settle);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "base/clock.h"
@@ -21,9 +22,12 @@ class MoveTask {
  public:
   static constexpr Duration kLongestUnseen = std::chrono::milliseconds(250);
 
+  /// Whether the axes must settle at the end, or only come to rest there, to go on.
+  enum class Ending : std::uint8_t { Settle, Rest };
+
   /// `before` is a look from just before the command was sent at `now`. Axes without a target are not waited for.
   MoveTask(const StageConfig& config, const StageState& before, const MotionTarget& target, MotionToken token,
-           Epoch epoch, Instant now);
+           Epoch epoch, Instant now, Ending ending = Ending::Settle);
 
   /// Errors: those of MotionWatch; NotHomed; MotionLate with the axis, where it is and where it should be.
   [[nodiscard]] Result<MotionProgress> look(const StageState& seen, Instant now);

@@ -72,6 +72,44 @@ TEST(Instrument, HasArmsUnlessItNamesOtherKinematics) {
   EXPECT_DOUBLE_EQ(in_degrees(sample.stage.kinematics.turning.source_elevation), 5.0);
 }
 
+constexpr std::string_view kKeepOut =
+    "\n[stage.keep_out]\nmargin_mm = 10.0\n[stage.keep_out.source]\nnearest_mm = 550.0\nfarthest_mm = 800.0\n"
+    "radius_mm = 50.0\n[stage.keep_out.detector]\nnearest_mm = 500.0\nfarthest_mm = 700.0\nradius_mm = 45.0\n"
+    "\n[stage.carriage]";
+
+TEST(Instrument, HasAKeepOutOnlyWhereItIsNamed) {
+  const Instrument without = read(whole_text());
+  const Instrument with_it = read(with(whole_text(), "\n[stage.carriage]", kKeepOut));
+
+  EXPECT_FALSE(without.stage.keep_out);
+  ASSERT_TRUE(with_it.stage.keep_out);
+  EXPECT_NEAR(in_degrees(with_it.stage.keep_out->least_separation()), 11.00584, 1e-5);  // asin(105 / 550)
+}
+
+TEST(Instrument, RefusesHeadsThatCanNeverPassEachOther) {
+  std::string huge(kKeepOut);
+  const std::size_t at = huge.find("margin_mm = 10.0");
+  huge.replace(at, 16, "margin_mm = 900.");
+
+  const Error error = error_of("\n[stage.carriage]", huge);
+
+  EXPECT_EQ(error.code, ErrorCode::InvalidInput);
+  EXPECT_THAT(error.limit, HasSubstr("pass each other"));
+}
+
+TEST(Instrument, AnApproachSideNeedsItsOverrun) {
+  const Instrument instrument = read(
+      with(whole_text(), "window_deg = 0.01\n", "window_deg = 0.01\napproach = \"from above\"\nbacklash_deg = 0.3\n"));
+  const Error missing = error_of("window_deg = 0.01\n", "window_deg = 0.01\napproach = \"from above\"\n");
+  const Error stray = error_of("window_deg = 0.01\n", "window_deg = 0.01\nbacklash_deg = 0.3\n");
+
+  EXPECT_EQ(instrument.stage.axis(stage::Axis::ThetaI).approach, drivers::Approach::FromAbove);
+  EXPECT_EQ(instrument.stage.axis(stage::Axis::ThetaI).overrun, 0.3);
+  EXPECT_EQ(instrument.stage.axis(stage::Axis::ThetaR).approach, drivers::Approach::Any);
+  EXPECT_EQ(missing.code, ErrorCode::MissingKey);
+  EXPECT_EQ(stray.code, ErrorCode::UnknownKey);
+}
+
 TEST(Instrument, RefusesAnAxisThatTurnsTwoThings) {
   const Error error = error_of("\n[stage.carriage]",
                                "\n[stage.kinematics]\nkind = \"turning-sample\"\nyaw = \"phi_i\"\npitch = \"phi_i\"\n"

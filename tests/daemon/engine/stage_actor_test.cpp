@@ -31,6 +31,7 @@ class ScriptedStage final : public drivers::Stage {
   }
   Result<drivers::MotionToken> start_move(const drivers::MotionTarget& target, drivers::Epoch epoch) override {
     told.push_back("move");
+    targets.push_back(target);
     epochs.push_back(epoch);
     target_ = target;
     arrives_at = clock_.now() + travel;
@@ -58,9 +59,11 @@ class ScriptedStage final : public drivers::Stage {
   drivers::StageState state;
   std::optional<Error> broken;
   Duration travel = 1s;
+  bool stops_on_arrival = false;  ///< somebody stops the stage at the instant at which it arrives
   std::optional<Instant> arrives_at;
   std::vector<std::string> told;
   std::vector<drivers::Epoch> epochs;
+  std::vector<drivers::MotionTarget> targets;
   int looks = 0;
 
  private:
@@ -70,6 +73,7 @@ class ScriptedStage final : public drivers::Stage {
     }
     state.moving = false;
     state.homed = true;
+    if (stops_on_arrival) ++state.stop_count;
     arrives_at.reset();
   }
 
@@ -106,6 +110,11 @@ class StageActorTest : public testing::Test {
     MoveTo request{.ticket = ticket, .epoch = 4, .target = {}, .source_shutter_open = {}, .detector_shutter_open = {}};
     request.target[stage::index_of(Axis::ThetaR)] = theta_r;
     return request;
+  }
+
+  void keep_the_arms_apart() {
+    const drivers::ArmHead head{millimetres(500.0), millimetres(700.0), millimetres(50.0)};
+    config.keep_out.emplace(head, head, millimetres(0.0));
   }
 
   ManualClock clock;
@@ -180,6 +189,118 @@ TEST_F(StageActorTest, TellsAtOnceThatTheStageWasLostInAMove) {
 
   ASSERT_FALSE(answers[0].state.has_value());
   EXPECT_EQ(answers[0].state.error().code, ErrorCode::Unreachable);
+}
+
+/// theta_r arrives from below, going past by 2 deg.
+class StageActorApproachTest : public StageActorTest {
+ protected:
+  StageActorApproachTest() {
+    config.axes[kThetaR].approach = drivers::Approach::FromBelow;
+    config.axes[kThetaR].overrun = 2.0;
+    stage.state.axes[kThetaR].position = 50.0;
+  }
+
+  [[nodiscard]] std::vector<double> stops() const {
+    std::vector<double> at;
+    for (const auto& target : stage.targets) at.push_back(target[kThetaR].value_or(-1.0));
+    return at;
+  }
+
+  static constexpr std::size_t kThetaR = stage::index_of(Axis::ThetaR);
+};
+
+TEST_F(StageActorApproachTest, PlaysAMoveFromTheWrongSideAsTwoLegsOfOneEpoch) {
+  const Instant start = clock.now();
+  ask(move(1, 20.0));
+
+  run_for_answers(1);
+
+  ASSERT_TRUE(answers[0].state) << describe(answers[0].state.error());
+  EXPECT_EQ(stops(), (std::vector{18.0, 20.0}));
+  EXPECT_EQ(stage.epochs, (std::vector<drivers::Epoch>{4, 4}));
+  EXPECT_DOUBLE_EQ(answers[0].state->axes[kThetaR].position, 20.0);
+  EXPECT_GE(clock.now() - start, 2100ms);  // two travels of a second; only the last settles
+  EXPECT_LE(clock.now() - start, 3700ms);  // by the numbers 3.3 s and 0.3 s: the looks come when they are due
+}
+
+TEST_F(StageActorApproachTest, GoesPastAfterHomingButNotAgainAfterAMoveThatEndedWell) {
+  stage.state.axes[kThetaR].position = 20.0;
+  ask(move(1, 20.0));
+  ask(move(2, 20.0));
+  ask(move(3, 30.0));
+  run_for_answers(3);
+  const auto before_homing = stops();
+  ask(Home{4, 4});
+  ask(move(5, 30.0));
+  run_for_answers(5);
+
+  EXPECT_EQ(before_homing, (std::vector{18.0, 20.0, 20.0, 30.0}));
+  EXPECT_EQ(std::vector(stops().begin() + 4, stops().end()), (std::vector{28.0, 30.0}));
+}
+
+TEST_F(StageActorApproachTest, StartsNoLegAfterAStop) {
+  ask(move(1, 20.0));
+  executor.run_for(100ms);
+
+  // A STOP and its reset between two looks: only the count tells.
+  stage.state.stop_count = 1;
+  run_for_answers(1);
+
+  ASSERT_FALSE(answers[0].state.has_value());
+  EXPECT_EQ(answers[0].state.error().code, ErrorCode::Stopped);
+  EXPECT_EQ(stops(), std::vector{18.0});
+}
+
+TEST_F(StageActorApproachTest, IsStoppedWhenTheStopFallsBetweenTwoLegs) {
+  stage.stops_on_arrival = true;
+  ask(move(1, 20.0));
+
+  run_for_answers(1);
+
+  ASSERT_FALSE(answers[0].state.has_value());
+  EXPECT_EQ(answers[0].state.error().code, ErrorCode::Stopped);
+  EXPECT_EQ(stops(), std::vector{18.0});
+}
+
+TEST_F(StageActorApproachTest, TakesTheSlackUpAgainAfterAMoveThatFailed) {
+  ask(move(1, 20.0));
+  executor.run_for(100ms);
+  stage.state.stop_count = 1;
+  run_for_answers(1);
+  stage.arrives_at.reset();
+  stage.state.moving = false;
+  stage.state.axes[kThetaR].position = 19.5;
+
+  ask(move(2, 20.0));
+  run_for_answers(2);
+
+  EXPECT_EQ(stops(), (std::vector{18.0, 18.0, 20.0}));
+}
+
+TEST_F(StageActorTest, DoesNotMoveArmsThatMayMeetBeforeTheyAreHomed) {
+  keep_the_arms_apart();
+  stage.state.axes[stage::index_of(Axis::PhiI)].homed = false;
+
+  ask(move(1, 30.0));
+  run_for_answers(1);
+
+  ASSERT_FALSE(answers[0].state.has_value());
+  EXPECT_EQ(answers[0].state.error().code, ErrorCode::NotHomed);
+  EXPECT_TRUE(stage.told.empty());
+}
+
+TEST_F(StageActorTest, MovesNothingAtAllWhenTheWayIsBlocked) {
+  keep_the_arms_apart();
+  MoveTo into = move(1, 30.0);
+  into.target[stage::index_of(Axis::ThetaI)] = 33.0;
+  into.source_shutter_open = true;
+
+  ask(into);
+  run_for_answers(1);
+
+  ASSERT_FALSE(answers[0].state.has_value());
+  EXPECT_EQ(answers[0].state.error().code, ErrorCode::Blocked);
+  EXPECT_TRUE(stage.told.empty());
 }
 
 TEST_F(StageActorTest, AnswersALookWhileAMoveIsUnderWay) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "tests/daemon/support/bench_instrument.h"
@@ -122,6 +123,101 @@ TEST(Planner, TurnsAnAzimuthIntoItsAxis) {
   ASSERT_TRUE(target);
   EXPECT_NEAR(*(*target)[stage::index_of(Axis::PhiR)], -15.0, 1e-9);
   EXPECT_EQ(*(*target)[stage::index_of(Axis::FilterWheel)], 1.0);
+}
+
+// Heads of 50 and 45 mm whose radii overlap: the arms keep 10 mm from about 11 deg on.
+Instrument instrument_with_keep_out() {
+  Instrument instrument = bench_instrument();
+  instrument.stage.keep_out.emplace(drivers::ArmHead{millimetres(550.0), millimetres(800.0), millimetres(50.0)},
+                                    drivers::ArmHead{millimetres(500.0), millimetres(700.0), millimetres(45.0)},
+                                    millimetres(10.0));
+  return instrument;
+}
+
+TEST(Planner, BlocksAPointOutsideOfTheShadowWhereTheArmsWouldMeet) {
+  const api::Plan plan = bench_plan({30}, {20, 36, 60}, {0});
+
+  const auto open = expand(plan, bench_instrument());
+  const auto kept_out = expand(plan, instrument_with_keep_out());
+
+  ASSERT_TRUE(open && kept_out);
+  EXPECT_EQ(open->blocked, 0);
+  EXPECT_EQ(kept_out->blocked, 2);
+}
+
+TEST(Planner, TheEstimateHoldsTheWayRoundTheOtherArm) {
+  api::Plan plan = bench_plan({40}, {20, 60}, {0});
+  plan.order = api::OrderStrategy::AsWritten;
+
+  const auto direct = expand(plan, bench_instrument());
+  const auto round = expand(plan, instrument_with_keep_out());
+
+  ASSERT_TRUE(direct && round) << describe(round.error());
+  EXPECT_GT(round->estimate.move, direct->estimate.move + std::chrono::seconds(1));
+}
+
+TEST(Planner, RefusesAPlanWithAPointThatTheArmsCannotComeToAndNamesThePlace) {
+  Instrument narrow = instrument_with_keep_out();
+  for (const Axis azimuth : {Axis::PhiR, Axis::PhiI}) {
+    narrow.stage.axes[stage::index_of(azimuth)].low = -1.0;
+    narrow.stage.axes[stage::index_of(azimuth)].high = 1.0;
+  }
+
+  const auto planned = expand(bench_plan({40}, {20, 60}, {0}), narrow);
+
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::Blocked);
+  EXPECT_NE(planned.error().tried.find("come to point"), std::string::npos) << describe(planned.error());
+  EXPECT_NE(planned.error().seen.find("deg of each other on the way"), std::string::npos);
+}
+
+TEST(Planner, TheEstimateHoldsTheTurnsOfAnApproachSide) {
+  api::Plan plan = bench_plan({30}, {60, 20}, {90});
+  plan.order = api::OrderStrategy::AsWritten;
+  Instrument with_side = bench_instrument();
+  drivers::AxisConfig& theta_r = with_side.stage.axes[stage::index_of(Axis::ThetaR)];
+  theta_r.approach = drivers::Approach::FromBelow;
+  theta_r.overrun = 0.8;
+
+  const auto without = expand(plan, bench_instrument());
+  const auto with = expand(plan, with_side);
+
+  ASSERT_TRUE(without && with);
+  // One move down, from 60 to 20 deg: 0.8 deg further at 20 deg/s, and back by it: 2 sqrt(0.8 / 40) s.
+  EXPECT_NEAR(in_seconds(with->estimate.move - without->estimate.move), 0.8 / 20.0 + 2.0 * std::sqrt(0.8 / 40.0), 1e-6);
+}
+
+TEST(Planner, RefusesAPlanWithoutRoomToTurnAndNamesItsField) {
+  Instrument with_side = bench_instrument();
+  drivers::AxisConfig& theta_r = with_side.stage.axes[stage::index_of(Axis::ThetaR)];
+  theta_r.approach = drivers::Approach::FromBelow;
+  theta_r.overrun = 0.8;
+
+  const auto planned = expand(bench_plan({30}, {0.5, 45}, {90}), with_side);
+
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::OutOfLimits);
+  EXPECT_EQ(planned.error().where->field, "geometry.theta_r_deg");
+}
+
+TEST(Planner, RefusesADirectionThatATurningSampleDoesNotReachAndNamesIt) {
+  Instrument turning = bench_instrument();
+  turning.stage.kinematics.kind = drivers::KinematicsKind::TurningSample;
+  for (std::size_t a = 0; a < 4; ++a) turning.stage.axes[a].low = -180.0;
+  for (std::size_t a = 0; a < 4; ++a) turning.stage.axes[a].high = 180.0;
+  turning.stage.axes[stage::index_of(Axis::ThetaI)].high = 40.0;  // yaw
+  turning.stage.axes[stage::index_of(Axis::ThetaI)].low = -40.0;
+  turning.stage.axes[stage::index_of(Axis::PhiI)].high = 5.0;  // pitch
+  turning.stage.axes[stage::index_of(Axis::PhiI)].low = -5.0;
+
+  const auto reached = expand(bench_plan({30}, {20}, {180}), turning);
+  const auto refused = expand(bench_plan({60}, {20}, {180}), turning);
+
+  EXPECT_TRUE(reached) << describe(reached.error());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::OutOfLimits);
+  EXPECT_EQ(refused.error().where->field, "geometry");
+  EXPECT_NE(refused.error().tried.find("for theta_i 60.000"), std::string::npos) << refused.error().tried;
 }
 
 TEST(Planner, FastestIsNoSlowerThanAsWrittenAndVisitsTheSamePoints) {

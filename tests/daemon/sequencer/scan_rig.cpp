@@ -211,7 +211,7 @@ void ScanRig::move(const MoveTo& to) {
   }
   stage::PerAxis<double> from{};
   for (std::size_t a = 0; a < from.size(); ++a) from[a] = world.stage.axes[a].position;
-  const StepTime time = step_time(instrument_, from, to.target);
+  const StepTime time = step_time(instrument_, from, to.target).value_or(StepTime{});
   for (std::size_t a = 0; a < from.size(); ++a) world.stage.axes[a].position = to.target[a].value_or(from[a]);
   world.moving_until = clock_.now() + time.move;
   open_move_ = to.ticket;
