@@ -6,6 +6,8 @@
 
 #include "sim/optics/disc_overlap.h"
 
+#include "sim/optics/turning_geometry.h"
+
 namespace gonio::sim {
 
 using reflectance::Direction;
@@ -65,6 +67,12 @@ Geometry LightPath::true_geometry(const StagePose& pose) const {
                           truth_.repeat_error(axis, pose.last_moves[a]);
     return pointed + encoder_error(scene_.effects.encoder[a], degrees(pose.positions[a]));
   };
+  if (const auto& sample = scene_.stage.turning_sample) {
+    return directions_on(*sample, {.yaw = angle(sample->yaw),
+                                   .pitch = angle(sample->pitch),
+                                   .roll = angle(sample->roll),
+                                   .detector_arm = angle(sample->detector_arm)});
+  }
   return {.theta_i = angle(Axis::ThetaI),
           .phi_i = angle(Axis::PhiI),
           .theta_r = angle(Axis::ThetaR),

@@ -46,6 +46,16 @@ std::string stage_address_lines(const WireAddresses& addresses) {
                      addresses.stage_line, addresses.stage_baud);
 }
 
+std::string kinematics_section(const TurningSampleSpec& sample) {
+  return fmt::format(
+      "\n[stage.kinematics]\nkind = \"turning-sample\"\nyaw = \"{}\"\npitch = \"{}\"\nroll = \"{}\"\n"
+      "detector_arm = \"{}\"\nsource_azimuth_deg = {:.10g}\nsource_elevation_deg = {:.10g}\n"
+      "detector_plane_tilt_deg = {:.10g}\n",
+      stage::axis_name(sample.yaw), stage::axis_name(sample.pitch), stage::axis_name(sample.roll),
+      stage::axis_name(sample.detector_arm), in_degrees(sample.source_azimuth), in_degrees(sample.source_elevation),
+      in_degrees(sample.detector_plane_tilt));
+}
+
 std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
   constexpr double kPatience = 2.0;
   std::string text = fmt::format(
@@ -54,6 +64,7 @@ std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
       scene.stage.drives ? "kind = \"drives\"\n" : "", stage_address_lines(addresses), homing_time_s(scene),
       2.0 * wall_s(scene, scene.stage.shutter_s) + kPatience, scene.stage.heartbeat_timeout_wall_s, kPatience);
   for (const Axis axis : stage::kAllAxes) text += axis_section(scene, axis);
+  if (scene.stage.turning_sample) text += kinematics_section(*scene.stage.turning_sample);
   text += fmt::format("\n[stage.carriage]\nsample_mm = {}\nreference_mm = {}\ntrap_mm = {}\n", scene.stage.sample_mm,
                       scene.stage.reference_mm, scene.stage.trap_mm);
   for (const FilterSpec& filter : scene.filters) {

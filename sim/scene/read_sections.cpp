@@ -6,6 +6,8 @@
 
 #include "sim/scene/read_effects.h"
 
+#include "sim/scene/read_kinematics.h"
+
 namespace gonio::sim {
 namespace {
 
@@ -97,6 +99,7 @@ void read_stage(TomlReader t, StageSpec& spec) {
   TomlReader axes = t.table("axes");
   for (const Axis axis : stage::kAllAxes)
     read_axis(axes.table(stage::axis_name(axis)), axis, spec.axes[stage::index_of(axis)]);
+  if (auto kinematics = t.optional_table("kinematics")) read_kinematics(*std::move(kinematics), spec);
   TomlReader carriage = t.table("carriage");
   const AxisSpec& rail = spec.axes[stage::index_of(Axis::Carriage)];
   const NumberRange on_the_rail{.least = rail.low, .most = rail.high, .unit = "mm"};

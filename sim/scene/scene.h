@@ -16,6 +16,7 @@
 #include "sim/scene/radiometer_spec.h"
 #include "sim/scene/reference_spec.h"
 #include "sim/scene/told_spec.h"
+#include "sim/scene/turning_sample_spec.h"
 
 namespace gonio::sim {
 
@@ -89,8 +90,9 @@ struct StageSpec {
   double shutter_s = 0.0;          ///< travel; light passes when it is fully open
   double following_error_s = 0.5;  ///< a blocked axis is noticed after so long
   double heartbeat_timeout_wall_s = 2.0;
-  stage::RegisterMap registers;                ///< our own
-  std::optional<stage::DriveStageMap> drives;  ///< when set, the stage is one of drives; scales in wall time
+  stage::RegisterMap registers;                     ///< our own
+  std::optional<stage::DriveStageMap> drives;       ///< when set, the stage is one of drives; scales in wall time
+  std::optional<TurningSampleSpec> turning_sample;  ///< else each axis is the angle of its name
 };
 
 /// Standard uncertainties (k = 1) of the directions: what the daemon is told, and what the truth is drawn from.

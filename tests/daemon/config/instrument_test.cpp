@@ -89,7 +89,7 @@ TEST(Instrument, HasAKeepOutOnlyWhereItIsNamed) {
 TEST(Instrument, RefusesHeadsThatCanNeverPassEachOther) {
   std::string huge(kKeepOut);
   const std::size_t at = huge.find("margin_mm = 10.0");
-  huge.replace(at, 16, "margin_mm = 900.");
+  huge.replace(at, 16, "margin_mm = 900.0");
 
   const Error error = error_of("\n[stage.carriage]", huge);
 
