@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <thread>
 #include <vector>
 
@@ -72,6 +73,7 @@ bool hold(const Contest& contest, int rounds) {
   fmt::print("{:<58} {:>10.0f} {:>10.0f} {:>7.3f}  {:.3f} to {:.3f}  {}\n", contest.what, quantile(ours, 0.5),
              quantile(bare, 0.5), ratio, quantile(ratios, 0.25), quantile(ratios, 0.75),
              holds ? "holds" : fmt::format("BELOW {}", kLeastRatio));
+  std::fflush(stdout);
   return holds;
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -62,12 +63,6 @@ std::jthread busy_engine(drivers::ModbusLink& link) {
   });
 }
 
-// Waits until the next request of the engine is under way.
-void await_request(const bench::StopWitness& stage) {
-  const std::uint64_t before = stage.others();
-  while (stage.others() == before) std::this_thread::yield();
-}
-
 std::vector<double> latencies_ms(bool is_serial, bool is_busy, int stops) {
   const std::string line =
       is_serial ? (std::filesystem::temp_directory_path() / fmt::format("bench-stop-{}.tty", ::getpid())).string() : "";
@@ -81,7 +76,7 @@ std::vector<double> latencies_ms(bool is_serial, bool is_busy, int stops) {
   if (is_busy) engine = busy_engine(ways.normal());
   std::vector<double> taken;
   for (int k = 0; k < stops; ++k) {
-    if (is_busy) await_request(stage);
+    if (is_busy && !stage.await_other()) return {};
     stage.expect_halt();
     const Instant asked = clock.now();
     path.stop("bench");
@@ -105,6 +100,7 @@ bool report(const std::string& what, std::vector<double> taken) {
   const bool holds = taken.back() <= in_seconds(kLimit) * 1e3;
   fmt::print("{:<52} {:>8.2f} {:>8.2f} {:>8.2f}  {}\n", what, at(0.5), at(0.99), taken.back(),
              holds ? "holds" : "BEYOND 50 ms");
+  std::fflush(stdout);
   return holds;
 }
 

@@ -13,6 +13,7 @@
 namespace gonio::bench {
 namespace {
 
+constexpr Duration kPatience = std::chrono::seconds(10);
 constexpr std::size_t kMbapHead = 6;  // up to the length; the unit follows
 constexpr std::uint8_t kWriteSeveral = 0x10;
 constexpr std::size_t kEcho = 5;  // of a write: function, address, count
@@ -55,7 +56,7 @@ void StopWitness::expect_halt() {
 
 std::optional<Instant> StopWitness::halt_came() {
   std::unique_lock lock(mutex_);
-  came_.wait_for(lock, std::chrono::seconds(10), [&] { return halt_.has_value(); });
+  came_.wait_for(lock, kPatience, [&] { return halt_.has_value(); });
   return halt_;
 }
 
@@ -63,6 +64,18 @@ void StopWitness::note_halt() {
   const std::lock_guard lock(mutex_);
   if (!halt_) halt_ = clock_.now();
   came_.notify_all();
+}
+
+void StopWitness::note_other() {
+  const std::lock_guard lock(mutex_);
+  ++others_;
+  came_.notify_all();
+}
+
+bool StopWitness::await_other() {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t before = others_;
+  return came_.wait_for(lock, kPatience, [&] { return others_ != before; });
 }
 
 void StopWitness::run(const std::stop_token& stop) {
@@ -97,7 +110,7 @@ void StopWitness::take(Peer& peer, int descriptor) {
   hear(peer, descriptor, is_serial_ ? 0 : kMbapHead);
 }
 
-// Whole requests from the front; on a line a halt ends what was cut off by it.
+// Whole requests from the front.
 void StopWitness::hear(Peer& peer, int descriptor, std::size_t head) {
   for (;;) {
     const std::span<const std::uint8_t> all(peer.received);
@@ -114,7 +127,7 @@ void StopWitness::hear(Peer& peer, int descriptor, std::size_t head) {
       if (is_serial_) reply = sim::rtu_frame(frame[0], pdu.first(kEcho));
       write_all(descriptor, reply, is_serial_);
     } else {
-      ++others_;
+      note_other();
     }
     peer.received.erase(peer.received.begin(), peer.received.begin() + static_cast<std::ptrdiff_t>(*size));
   }

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,7 +16,7 @@
 
 namespace gonio::bench {
 
-/// A stage of two registers and a half: it notes when a halt has come whole, answers halts, and leaves everything else
+/// A stage for STOP alone: it notes when a halt has come whole, answers halts, and leaves everything else
 /// unanswered. Behind a listening socket (Modbus TCP) or a pseudo terminal (Modbus RTU).
 class StopWitness {
  public:
@@ -32,8 +30,8 @@ class StopWitness {
   /// When the next halt came; call before it is sent. Waits at most 10 s.
   void expect_halt();
   [[nodiscard]] std::optional<Instant> halt_came();
-  /// Requests other than halts, so far.
-  [[nodiscard]] std::uint64_t others() const { return others_; }
+  /// Until a request that is no halt comes, at most 10 s; false when none does.
+  [[nodiscard]] bool await_other();
 
  private:
   struct Peer {
@@ -44,17 +42,18 @@ class StopWitness {
   void take(Peer& peer, int descriptor);
   void hear(Peer& peer, int descriptor, std::size_t head);
   void note_halt();
+  void note_other();
 
   bool is_serial_;
   std::optional<sim::SerialPty> pty_;
   sim::FileDescriptor listener_;
   sim::FileDescriptor wake_up_;
   std::vector<std::unique_ptr<Peer>> peers_;
-  std::atomic<std::uint64_t> others_{0};
   SystemClock clock_;
   std::mutex mutex_;
   std::condition_variable came_;
   std::optional<Instant> halt_;
+  std::uint64_t others_ = 0;
   std::jthread thread_;  // last: it uses all of the above
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/socket.h>
 
+#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -44,10 +45,16 @@ struct TcpModbusLink::Impl {
   // make than a register to read.
   template <class Tried, class Call>
   Result<void> transact(const ModbusUnit& unit, Tried tried, Call call) {
-    GONIO_TRY(ensure_connected());
+    Result<void> done = ensure_connected();
+    if (done && is_interrupted.exchange(false)) {
+      close();
+      done = failure({.code = ErrorCode::Unreachable, .device = "stage", .tried = tried(), .seen = "interrupted"});
+    }
+    if (!done) return done;
     context.select(unit);
-    Result<void> done = call(context);
+    done = call(context);
     if (done) return done;
+    is_interrupted = false;  // if it was, this call has given way
     Error& error = done.error();
     if (error.code != ErrorCode::DeviceRefused) close();
     error.device = "stage";
@@ -59,8 +66,10 @@ struct TcpModbusLink::Impl {
     return done;
   }
 
+  // Remembered as well: a socket that is not connected yet cannot be shut down, and would go on to wait for a reply.
   void interrupt() {
     const std::lock_guard lock(socket_mutex);
+    is_interrupted = true;
     if (socket.descriptor() >= 0) ::shutdown(socket.descriptor(), SHUT_RDWR);
   }
 
@@ -69,6 +78,7 @@ struct TcpModbusLink::Impl {
   std::mutex socket_mutex;  ///< guards the descriptor's life against `interrupt`
   TcpSocket socket;
   bool is_connected = false;
+  std::atomic<bool> is_interrupted{false};
 };
 
 /// One unit over the connection of a link.

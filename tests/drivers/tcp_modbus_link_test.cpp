@@ -250,6 +250,23 @@ TEST(TcpModbusLink, LooksUpNoNames) {
   EXPECT_EQ(done.error().code, ErrorCode::InvalidInput);
 }
 
+TEST(TcpModbusLink, GivesWayToAnInterruptThatCameBeforeItWasConnected) {
+  ScriptedModbusServer server(
+      [](const Bytes& request, int n) { return n == 0 ? Answer{reply_to(request, bytes("03 02 00 07"))} : Answer{}; });
+  TcpModbusLink link(config(server.port(), kPatience));
+  std::array<std::uint16_t, 1> word{};
+
+  link.interrupt();
+  const auto interrupted = link.read_registers(0, word);
+  const auto next = link.read_registers(0, word);
+
+  ASSERT_FALSE(interrupted);
+  EXPECT_EQ(interrupted.error().code, ErrorCode::Unreachable);
+  EXPECT_EQ(interrupted.error().seen, "interrupted");
+  EXPECT_TRUE(next);
+  EXPECT_EQ(server.requests().size(), 1U);
+}
+
 TEST(TcpModbusLink, GivesUpAtOnceWhenItIsInterrupted) {
   ScriptedModbusServer server([](const Bytes&, int) { return Answer{}; });
   TcpModbusLink link(config(server.port(), 1h));
