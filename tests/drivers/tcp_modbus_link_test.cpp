@@ -251,8 +251,7 @@ TEST(TcpModbusLink, LooksUpNoNames) {
 }
 
 TEST(TcpModbusLink, GivesWayToAnInterruptThatCameBeforeItWasConnected) {
-  ScriptedModbusServer server(
-      [](const Bytes& request, int n) { return n == 0 ? Answer{reply_to(request, bytes("03 02 00 07"))} : Answer{}; });
+  ScriptedModbusServer server(always("03 02 00 07"));
   TcpModbusLink link(config(server.port(), kPatience));
   std::array<std::uint16_t, 1> word{};
 
@@ -260,10 +259,10 @@ TEST(TcpModbusLink, GivesWayToAnInterruptThatCameBeforeItWasConnected) {
   const auto interrupted = link.read_registers(0, word);
   const auto next = link.read_registers(0, word);
 
-  ASSERT_FALSE(interrupted);
+  ASSERT_FALSE(interrupted.has_value());
   EXPECT_EQ(interrupted.error().code, ErrorCode::Unreachable);
   EXPECT_EQ(interrupted.error().seen, "interrupted");
-  EXPECT_TRUE(next);
+  EXPECT_TRUE(next.has_value());
   EXPECT_EQ(server.requests().size(), 1U);
 }
 
