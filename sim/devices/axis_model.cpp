@@ -6,7 +6,9 @@
 namespace gonio::sim {
 namespace {
 
-constexpr std::uint16_t kFollowingError = 1;  // protocol/stage: `axis_fault`
+// protocol/stage: `axis_fault`
+constexpr std::uint16_t kFollowingError = 1;
+constexpr std::uint16_t kLimitSwitch = 3;
 
 }  // namespace
 
@@ -94,6 +96,18 @@ void AxisModel::block(Instant now) {
   homing_end_.reset();
   fault_due_ = now + following_error_;
   follow(Trajectory(position(now)), now);
+}
+
+void AxisModel::lose_steps(double by, Instant now) {
+  if (!path_.is_moving(now)) return;
+  const double here = position(now);
+  const double forward = path_.destination() < here ? -1.0 : 1.0;
+  path_ = Trajectory::move(here, path_.destination() - forward * by, dynamics_, now);
+}
+
+void AxisModel::hit_limit(Instant now) {
+  brake(now);
+  fault_ = kLimitSwitch;
 }
 
 void AxisModel::clear_fault() {

@@ -31,6 +31,14 @@ class AxisModel {
   void power_cycle(Instant now);
   /// How often that has happened.
   [[nodiscard]] std::uint32_t boots() const { return boots_; }
+  /// The encoder slips: from now on it shows `by` more, until homing finds the zero again. The axis stays where it is.
+  void slip_encoder(double by) { origin_ -= by; }
+  /// The move under way ends `by` short of where it was to go (beyond it, for a negative one).
+  void lose_steps(double by, Instant now);
+  /// A limit switch closes.
+  void hit_limit(Instant now);
+  /// When the motion under way, or the last one, ends.
+  [[nodiscard]] Instant motion_end() const { return path_.end(); }
   void clear_fault();
 
   /// The next instant at which something happens by itself: homing ends, a following error is noticed.

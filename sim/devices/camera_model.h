@@ -51,6 +51,8 @@ class CameraModel {
   /// Both in one step.
   [[nodiscard]] std::optional<CameraFrame> collect(Instant now);
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  /// A number that no exposure of its own has: for faults.
+  std::uint64_t take_frame_id() { return ++frames_; }
   /// The next frame is number 1.
   void restart_frame_ids() { frames_ = 0; }
 

@@ -36,6 +36,7 @@ Instrument::Instrument(Scene scene, InstrumentMemory memory, Instant power_up)
       light_path_(scene_, truth_),
       charge_(scene_, truth_),
       stage_(scene_.stage, scene_.time_scale, memory.stage, power_up),
+      faults_(scene_.faults),
       power_up_(power_up),
       now_(power_up),
       memory_(std::move(memory)) {}
@@ -51,6 +52,7 @@ std::optional<Instant> Instrument::next_event() const {
   };
   consider(running_);
   for (const Collector& collector : collectors_) consider(collector.running);
+  if (const auto act = next_act()) next = std::min(next.value_or(*act), *act);
   return next;
 }
 
@@ -60,6 +62,7 @@ void Instrument::advance_to(Instant now) {
   for (auto due = next_event(); due && *due <= now_; due = next_event()) {
     integrate_to(*due);
     stage_.advance_to(*due);
+    act_on_faults(*due);
     if (running_ && running_->close <= *due) finish_exposure();
     for (Collector& collector : collectors_) {
       if (collector.running && collector.running->close <= *due) finish_collection(collector);
@@ -70,7 +73,11 @@ void Instrument::advance_to(Instant now) {
 
 void Instrument::power_cycle_stage(Instant now) {
   advance_to(now);
-  stage_ = StageModel(scene_.stage, scene_.time_scale, stage_.memory(now_), now_);
+  reboot_stage(now_);
+}
+
+void Instrument::reboot_stage(Instant now) {
+  stage_ = StageModel(scene_.stage, scene_.time_scale, stage_.memory(now), now);
 }
 
 bool Instrument::start_exposure(Duration duration, double gain_db, Instant now) {
@@ -87,6 +94,7 @@ bool Instrument::start_exposure(Duration duration, double gain_db, Instant now) 
                      .integrated_to = now_,
                      .gain_db = gain_db,
                      .place = light_path_.place(here)};
+  note_exposure(now_, now_ + duration);
   return true;
 }
 
@@ -170,8 +178,9 @@ void Instrument::finish_exposure() {
   running_.reset();
   const double from_s = scene_time_s(run.open);
   const double to_s = scene_time_s(run.close);
-  stage_.close_gate(run.close, lamp_.monitor(from_s, to_s, memory_.exposures));
-  Exposure exposure = charge_.collect(run.light, lamp_.mean(from_s, to_s), from_s, to_s - from_s);
+  stage_.close_gate(run.close, lamp_faults_.shown(lamp_.monitor(from_s, to_s, memory_.exposures), from_s, to_s));
+  Exposure exposure =
+      charge_.collect(run.light, lamp_.mean(from_s, to_s) * lamp_faults_.mean(from_s, to_s), from_s, to_s - from_s);
   exposure.number = memory_.exposures;
   exposure.open = run.open;
   exposure.close = run.close;
@@ -184,7 +193,7 @@ void Instrument::finish_collection(Collector& collector) {
   const Running run = *std::exchange(collector.running, std::nullopt);
   const double from_s = scene_time_s(run.open);
   const double to_s = scene_time_s(run.close);
-  const double lamp = lamp_.mean(from_s, to_s);
+  const double lamp = lamp_.mean(from_s, to_s) * lamp_faults_.mean(from_s, to_s);
   const FilterSpec* filter = light_path_.filter_at(pose(run.close).positions[stage::index_of(Axis::FilterWheel)]);
   collector.finished =
       LightCollection{.open = run.open,

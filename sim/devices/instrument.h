@@ -11,6 +11,8 @@
 #include "sim/devices/detector_charge.h"
 #include "sim/devices/detector_noise.h"
 #include "sim/devices/stage_model.h"
+#include "sim/faults/fault_desk.h"
+#include "sim/faults/lamp_faults.h"
 #include "sim/optics/lamp.h"
 #include "sim/optics/light_path.h"
 #include "sim/scene/scene.h"
@@ -64,6 +66,21 @@ class Instrument {
   [[nodiscard]] StageModel& stage() { return stage_; }
   [[nodiscard]] const StageModel& stage() const { return stage_; }
 
+  // ---- faults (instrument_faults.cpp) ----
+
+  /// False: too many are armed. What waits for nothing comes at once.
+  [[nodiscard]] bool arm(const PlannedFault& fault, Instant now);
+  /// What of this kind is armed or stands is over.
+  void end_fault(FaultKind kind, Instant now);
+  /// A moment on a wire: what strikes there. `is_meant` as FaultDesk::strike has it.
+  template <class Predicate>
+  [[nodiscard]] std::optional<PlannedFault> strike(FaultMoment moment, Instant now, Predicate is_meant) {
+    return faults_.strike(moment, scene_time_s(now), now, is_meant);
+  }
+  [[nodiscard]] const FaultDesk& faults() const { return faults_; }
+  /// The stage has been given a motion: what is meant for its middle is set.
+  void note_motion(Instant now);
+
   /// The stage loses its power and gets it back: home, epoch, latches and counters are gone, the boot counter grows.
   void power_cycle_stage(Instant now);
 
@@ -89,7 +106,9 @@ class Instrument {
   [[nodiscard]] Temperature detector_temperature(Instant now) const {
     return charge_.drift().detector_temperature(scene_time_s(now));
   }
-  [[nodiscard]] double monitor_now(Instant now) const { return lamp_.monitor_now(scene_time_s(now)); }
+  [[nodiscard]] double monitor_now(Instant now) const {
+    return lamp_faults_.shown_now(lamp_.monitor_now(scene_time_s(now)), scene_time_s(now));
+  }
   [[nodiscard]] StagePose pose(Instant t) const;
   [[nodiscard]] InstrumentMemory memory(Instant now) const;
 
@@ -103,6 +122,19 @@ class Instrument {
     LightRate light;  ///< integrated so far
   };
   [[nodiscard]] double scene_time_s(Instant t) const;
+  /// Something that a fault does at its own instant.
+  struct Act {
+    Instant at{};
+    PlannedFault fault;
+    bool is_end = false;
+  };
+  void put_on_agenda(const Act& act);
+  void begin_fault(const PlannedFault& fault, Instant now);
+  void undo_fault(FaultKind kind, Instant now);
+  void act_on_faults(Instant now);
+  [[nodiscard]] std::optional<Instant> next_act() const;
+  void note_exposure(Instant open, Instant close);
+  void reboot_stage(Instant now);
   void integrate_to(Instant t);
   void integrate(Running& run, Instant t) const;
   [[nodiscard]] LightRate light_integral(Instant from, Instant to) const;
@@ -119,6 +151,9 @@ class Instrument {
   LightPath light_path_;
   DetectorCharge charge_;
   StageModel stage_;
+  FaultDesk faults_;
+  LampFaults lamp_faults_;
+  std::vector<Act> agenda_;  ///< of faults; in the order of time
   Instant power_up_;
   Instant now_;
   InstrumentMemory memory_;

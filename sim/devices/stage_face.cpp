@@ -186,7 +186,11 @@ std::optional<ModbusException> StageFace::act(std::uint16_t first, std::size_t c
   if (wrote(Field::SourceShutterCommand) || wrote(Field::DetectorShutterCommand)) {
     stage.set_shutters(value(Field::SourceShutterCommand) == 1, value(Field::DetectorShutterCommand) == 1, now);
   }
-  if (wrote(Field::MotionCommand)) stage.command_motion(motion_command(), now);
+  if (wrote(Field::MotionCommand)) {
+    const std::uint32_t before = stage.motion_commands();
+    stage.command_motion(motion_command(), now);
+    if (stage.motion_commands() != before) instrument_.note_motion(now);
+  }
   return std::nullopt;
 }
 

@@ -182,6 +182,13 @@ void StageModel::set_interlock(bool is_open, Instant now) {
   is_interlock_open_ = is_open;
 }
 
+void StageModel::hit_limit(Axis axis, Instant now) {
+  AxisModel& hit = axes_[stage::index_of(axis)];
+  hit.hit_limit(now);
+  fault_ = hit.fault();
+  brake_all(now);
+}
+
 bool StageModel::is_moving(Instant t) const {
   return std::ranges::any_of(axes_, [&](const AxisModel& axis) { return axis.is_moving(t); });
 }

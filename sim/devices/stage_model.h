@@ -80,6 +80,9 @@ class StageModel {
   void close_gate(Instant now, const MonitorReading& monitor);
 
   void block_axis(stage::Axis axis, Instant now) { axes_[stage::index_of(axis)].block(now); }
+  void slip_encoder(stage::Axis axis, double by) { axes_[stage::index_of(axis)].slip_encoder(by); }
+  void lose_steps(stage::Axis axis, double by, Instant now) { axes_[stage::index_of(axis)].lose_steps(by, now); }
+  void hit_limit(stage::Axis axis, Instant now);
   void free_axis(stage::Axis axis) { axes_[stage::index_of(axis)].free(); }
   void set_interlock(bool is_open, Instant now);
 

@@ -74,37 +74,18 @@ json exposure_report(LiveInstrument& instrument) {
       {"ok", true}, {"exposures", memory.exposures}, {"lit_exposures", memory.lit_exposures}, {"by_geometry", rows}};
 }
 
-json block_axis(const json& line, bool on, LiveInstrument& instrument) {
-  const std::string name = line.value("axis", "");
-  const auto axis = stage::axis_from_name(name);
-  if (!axis) return refusal(fmt::format("there is no axis \"{}\"", name));
-  instrument.with([&](LiveInstrument::Parts& parts) {
-    if (on)
-      parts.instrument.stage().block_axis(*axis, parts.now);
+// {"name": ..., "after": 3, "axis": "theta_r"}: what the key says it is, number or name.
+FaultWish wish_of(const json& line) {
+  FaultWish wish{
+      .name = line.at("fault").get<std::string>(), .device = line.value("device", ""), .numbers = {}, .names = {}};
+  for (const auto& [key, value] : line.items()) {
+    if (key == "fault" || key == "device" || key == "on") continue;
+    if (value.is_number())
+      wish.numbers.emplace_back(key, value.get<double>());
     else
-      parts.instrument.stage().free_axis(*axis);
-  });
-  return {{"ok", true}};
-}
-
-json set_fault(const json& line, LiveInstrument& instrument, StageWire& stage, GigeCameraServer& camera) {
-  const std::string fault = line.at("fault").get<std::string>();
-  const bool on = line.value("on", true);
-  if (fault == "axis-blocked") return block_axis(line, on, instrument);
-  if (fault == "stage-silent")
-    stage.set_silent(on);
-  else if (fault == "stage-refuse")
-    stage.set_refusing(on);
-  else if (fault == "camera-silent")
-    camera.set_silent(on);
-  else if (fault == "interlock-open") {
-    instrument.with([&](LiveInstrument::Parts& parts) { parts.instrument.stage().set_interlock(on, parts.now); });
-  } else if (fault == "stage-power-cycle") {
-    instrument.with([](LiveInstrument::Parts& parts) { parts.instrument.power_cycle_stage(parts.now); });
-  } else {
-    return refusal(fmt::format("there is no fault \"{}\"", fault));
+      wish.names.emplace_back(key, value.get<std::string>());
   }
-  return {{"ok", true}};
+  return wish;
 }
 
 // A refusal repeats what was sent, which need not be UTF-8.
@@ -112,20 +93,71 @@ std::string text_of(const json& answer) {
   return answer.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-json answer_line(const json& line, LiveInstrument& instrument, StageWire& stage, GigeCameraServer& camera) {
-  if (line.contains("fault")) return set_fault(line, instrument, stage, camera);
+json report_of(const PlannedFault& fault) {
+  const FaultTraits& kind = traits(fault.kind);
+  json report{{"fault", kind.name},
+              {"device", kFaultDeviceNames[static_cast<std::size_t>(kind.device)]},
+              {"moment", kFaultMomentNames[static_cast<std::size_t>(kind.moment)]},
+              {"at_s", fault.at_s},
+              {"times", fault.times}};
+  if (fault.after) report["after"] = *fault.after;
+  for (const FaultParameterTraits& p : kFaultParameterTable) {
+    if (!kind.parameters.has(p.parameter)) continue;
+    const std::string key(p.key);
+    if (p.parameter == FaultParameter::Axis)
+      report[key] = stage::axis_name(fault.axis());
+    else if (p.parameter == FaultParameter::Exchange)
+      report[key] = kExchangeNames[static_cast<std::size_t>(fault.exchange())];
+    else if (fault.values[p.parameter] < kUntilOff)
+      report[key] = fault.values[p.parameter];
+  }
+  return report;
+}
+
+json fault_report(LiveInstrument& instrument) {
+  return instrument.with([](LiveInstrument::Parts& parts) {
+    json faults = json::object();
+    for (const FaultTraits& kind : kFaultTable) {
+      const FaultCount count = parts.instrument.faults().count(kind.kind, parts.now);
+      if (count.armed == 0 && count.fired == 0) continue;
+      faults[std::string(kind.name)] = {{"armed", count.armed}, {"fired", count.fired}, {"active", count.is_active}};
+    }
+    return json{{"ok", true}, {"faults", faults}};
+  });
+}
+
+json set_fault(const json& line, LiveInstrument& instrument, const StageWire& stage) {
+  const auto fault = planned_fault(wish_of(line));
+  if (!fault) return refusal(describe(fault.error()));
+  if (!stage.can_have(fault->kind)) {
+    return refusal(fmt::format("the stage's wire of this run has no \"{}\"", traits(fault->kind).name));
+  }
+  return instrument.with([&](LiveInstrument::Parts& parts) -> json {
+    if (!line.value("on", true)) {
+      parts.instrument.end_fault(fault->kind, parts.now);
+      return {{"ok", true}, {"off", traits(fault->kind).name}};
+    }
+    if (!parts.instrument.arm(*fault, parts.now)) {
+      return refusal(fmt::format("{} faults are armed already", FaultDesk::kMostArmed));
+    }
+    return {{"ok", true}, {"armed", report_of(*fault)}};
+  });
+}
+
+json answer_line(const json& line, LiveInstrument& instrument, const StageWire& stage) {
+  if (line.contains("fault")) return set_fault(line, instrument, stage);
   const std::string query = line.value("query", "");
   if (query == "stage") return stage_report(instrument);
   if (query == "exposures") return exposure_report(instrument);
+  if (query == "faults") return fault_report(instrument);
   return refusal(fmt::format("there is no query \"{}\"", query));
 }
 
 }  // namespace
 
-std::string answer_control(const std::string& line, LiveInstrument& instrument, StageWire& stage,
-                           GigeCameraServer& camera) {
+std::string answer_control(const std::string& line, LiveInstrument& instrument, const StageWire& stage) {
   try {
-    return text_of(answer_line(json::parse(line), instrument, stage, camera));
+    return text_of(answer_line(json::parse(line), instrument, stage));
   } catch (const json::exception& trouble) {
     return text_of(refusal(trouble.what()));
   }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "sim/faults/fault_plan.h"
 #include "sim/goniosim/child.h"
 #include "sim/goniosim/find_scene.h"
 #include "sim/goniosim/simulator.h"
@@ -40,6 +41,7 @@ struct Options {
   WireWishes wishes;
   bool wants_drives = false;
   bool wants_truth = false;
+  bool wants_faults = false;
   std::string points;
   std::vector<std::string> daemon;  ///< what stands after --
 };
@@ -74,6 +76,7 @@ void describe_options(CLI::App& app, Options& options) {
       ->add_option("--points", options.points,
                    "CSV with theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg; - reads the standard input")
       ->required();
+  app.add_flag("--list-faults", options.wants_faults, "print the faults that a scene or the control socket can name");
   app.footer("In ARGS, {state} becomes the state folder. goniosim then ends with PROGRAM, and with its exit code.");
 }
 
@@ -102,6 +105,10 @@ std::variant<Options, int> parse(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kUsage;
   }
   options.wants_truth = app.got_subcommand("truth");
+  if (options.wants_faults) {
+    fmt::print("{}", fault_list());
+    return 0;
+  }
   if (!options.scene.empty()) return options;
   fmt::print(stderr, "goniosim: no scene named (see --help)\n");
   return kUsage;

@@ -67,7 +67,7 @@ Result<void> Simulator::bind(const SimulatorState& last, const WireWishes& wishe
   GONIO_TRY(bind_stage(last, wishes));
   GONIO_TRY(bind_camera(wishes.camera_address.empty() ? last.camera_address : wishes.camera_address));
   GONIO_TRY(plug_radiometers(wishes));
-  auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_, *camera_);
+  auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_);
   if (!control) return failure(std::move(control).error());
   control_ = *std::move(control);
   return {};

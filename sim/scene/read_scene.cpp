@@ -7,6 +7,7 @@
 
 #include "base/toml_reader.h"
 #include "reflectance/surface/make_surface.h"
+#include "sim/scene/read_faults.h"
 #include "sim/scene/read_sections.h"
 
 namespace gonio::sim {
@@ -67,6 +68,7 @@ Result<Scene> read_scene(const std::string& path) {
     bench = *std::move(parsed);
   }
   read_sections(*root, bench ? &*bench : nullptr, scene);
+  scene.faults = read_faults(*root);
   GONIO_TRY(root->finish());
   if (bench) GONIO_TRY(bench->finish());
   return scene;

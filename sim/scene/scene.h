@@ -12,6 +12,7 @@
 #include "protocol/stage/drive_stage_map.h"
 #include "protocol/stage/register_map.h"
 #include "reflectance/surface/surface.h"
+#include "sim/faults/fault_plan.h"
 #include "sim/scene/effects_spec.h"
 #include "sim/scene/radiometer_spec.h"
 #include "sim/scene/reference_spec.h"
@@ -127,6 +128,7 @@ struct Scene {
   std::vector<RadiometerSpec> radiometers;  ///< one before the sample and one before the lamp at most
   EffectsSpec effects;
   ToldSpec told;
+  FaultPlan faults;
 
   [[nodiscard]] double scene_seconds(Duration wall) const { return in_seconds(wall) * time_scale; }
   [[nodiscard]] Duration wall(double scene_s) const { return seconds(scene_s / time_scale); }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "sim/wires/big_endian.h"
 
@@ -90,6 +91,7 @@ void GigeCameraServer::power_up() {
   registers_ = CameraRegisters(identity_);
   controller_.reset();
   stream_.clear();
+  late_.reset();
   // The first exposure setting lies inside the limits by construction.
   (void)apply_settings();
 }
@@ -116,6 +118,7 @@ void GigeCameraServer::run(const std::stop_token& stop) {
     if (::ppoll(watched.data(), watched.size(), &timeout, nullptr) < 0) continue;
     drain(wake_up_);
     power_up_if_wanted();  // before anything that was sent after it is read
+    follow_faults();
     if ((watched[1].revents & POLLIN) != 0) receive();
     if ((watched[2].revents & POLLIN) != 0) answer_search();
     due = work(instrument_.clock().now());
@@ -125,9 +128,11 @@ void GigeCameraServer::run(const std::stop_token& stop) {
 std::optional<Instant> GigeCameraServer::work(Instant now) {
   release_silent_controller(now);
   collect_frame();
+  if (late_ && late_->due <= now) put_on_stream(std::exchange(late_, std::nullopt)->frame);
   auto due = stream_.send_due(stream_socket_.get(), now);
   const auto exposure_end = instrument_.with([](LiveInstrument::Parts& parts) { return parts.camera.ready_at(); });
   if (exposure_end) due = due ? std::min(*due, *exposure_end) : *exposure_end;
+  if (late_) due = due ? std::min(*due, late_->due) : late_->due;
   return due;
 }
 
@@ -135,22 +140,73 @@ void GigeCameraServer::collect_frame() {
   struct Finished {
     Exposure exposure;
     std::uint64_t frame_id;
+    std::optional<PlannedFault> fault;
   };
   const auto finished = instrument_.with([](LiveInstrument::Parts& parts) -> std::optional<Finished> {
     const auto exposure = parts.camera.collect_exposure(parts.now);
     if (!exposure) return std::nullopt;
-    return Finished{*exposure, parts.camera.frames()};
+    return Finished{*exposure, parts.camera.frames(),
+                    parts.instrument.strike(FaultMoment::Frame, parts.now, [](const PlannedFault&) { return true; })};
   });
-  const bool is_streaming = controller_ && registers_.word(address::kAcquisition) != 0 && !is_silent_;
+  const bool is_streaming =
+      controller_ && registers_.word(address::kAcquisition) != 0 && !is_silent_ && !is_unplugged_ && !is_taken_;
   if (!finished || !is_streaming) return;
+  // Outside of the lock: a frame takes longer to draw than any other request.
+  CameraFrame frame = make_frame(instrument_.scene(), finished->exposure, finished->frame_id);
+  if (finished->fault)
+    spoil(*finished->fault, std::move(frame));
+  else
+    put_on_stream(std::move(frame));
+}
+
+void GigeCameraServer::put_on_stream(CameraFrame frame) {
   sockaddr_in receiver{};
   receiver.sin_family = AF_INET;
   receiver.sin_port = htons(static_cast<std::uint16_t>(registers_.word(address::kStreamPort)));
   receiver.sin_addr.s_addr = htonl(registers_.word(address::kStreamAddress));
-  // Outside of the lock: a frame takes longer to draw than any other request.
-  const Scene& scene = instrument_.scene();
-  stream_.add(make_frame(scene, finished->exposure, finished->frame_id), region(),
-              registers_.word(address::kPacketSize) & 0xFFFFU, receiver);
+  stream_.add(frame, region(), registers_.word(address::kPacketSize) & 0xFFFFU, receiver);
+  last_frame_ = std::move(frame);
+}
+
+void GigeCameraServer::spoil(const PlannedFault& fault, CameraFrame frame) {
+  switch (fault.kind) {
+    case FaultKind::FrameLost:
+      return;
+    case FaultKind::FrameLate:
+      late_ = LateFrame{instrument_.clock().now() + fault.late(), std::move(frame)};
+      return;
+    case FaultKind::FrameStale:
+      return put_on_stream(last_frame_ ? CameraFrame(*last_frame_) : std::move(frame));
+    case FaultKind::FrameDuplicated: {
+      CameraFrame twin = frame;
+      put_on_stream(std::move(frame));
+      twin.frame_id = instrument_.with([](LiveInstrument::Parts& parts) { return parts.camera.take_frame_id(); });
+      return put_on_stream(std::move(twin));
+    }
+    case FaultKind::PacketsLost:
+    case FaultKind::PacketsGone:
+      stream_.lose_packets(fault.packets(), fault.kind == FaultKind::PacketsGone);
+      return put_on_stream(std::move(frame));
+    case FaultKind::FrameSaturated:
+      std::ranges::fill(frame.pixels, static_cast<std::uint16_t>(kFullScaleDn));
+      return put_on_stream(std::move(frame));
+    default:
+      return put_on_stream(std::move(frame));
+  }
+}
+
+bool GigeCameraServer::is_active(FaultKind kind) {
+  return instrument_.with(
+      [kind](LiveInstrument::Parts& parts) { return parts.instrument.faults().active(kind, parts.now) != nullptr; });
+}
+
+// A cable that is back in, a controller that has gone again.
+void GigeCameraServer::follow_faults() {
+  const bool was_unplugged = std::exchange(is_unplugged_, is_active(FaultKind::CameraSilent));
+  if (was_unplugged && !is_unplugged_) power_up();
+  const bool was_taken = std::exchange(is_taken_, is_active(FaultKind::ControlTaken));
+  if (is_taken_ != was_taken) release_control();
+  if (is_taken_) registers_.set_word(address::kControl, kControlBits);
 }
 
 SentRegion GigeCameraServer::region() const {
@@ -183,7 +239,7 @@ void GigeCameraServer::receive() {
   socklen_t size = sizeof sender_;
   const ssize_t n =
       ::recvfrom(control_.get(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&sender_), &size);
-  if (n <= 0 || is_silent_) return;
+  if (n <= 0 || is_silent_ || is_unplugged_) return;
   const auto request = parse_gvcp(std::span(bytes).first(static_cast<std::size_t>(n)));
   if (!request) return;
   if (is_controller()) controller_seen_ = instrument_.clock().now();
@@ -292,7 +348,7 @@ GvcpStatus GigeCameraServer::write_memory(const GvcpRequest& request, std::vecto
 }
 
 GvcpStatus GigeCameraServer::write_word(std::uint32_t at, std::uint32_t value) {
-  if (controller_ ? !is_controller() : at != address::kControl) return GvcpStatus::AccessDenied;
+  if (is_taken_ || (controller_ ? !is_controller() : at != address::kControl)) return GvcpStatus::AccessDenied;
   const GvcpStatus status = registers_.check_write(at, value);
   if (status == GvcpStatus::Success) registers_.set_word(at, value);
   return status;
@@ -308,6 +364,7 @@ GvcpStatus GigeCameraServer::apply(std::uint32_t at) {
   }
   if (at == address::kAcquisition && registers_.word(at) != 0) {
     stream_.clear();
+    late_.reset();
     instrument_.with([](LiveInstrument::Parts& parts) { parts.camera.restart_frame_ids(); });
   }
   if (at == address::kTriggerSoftware && registers_.word(at) != 0) return trigger();
@@ -335,8 +392,13 @@ GvcpStatus GigeCameraServer::trigger() {
   registers_.set_word(address::kTriggerSoftware, 0);
   if (registers_.word(address::kAcquisition) == 0 || registers_.word(address::kTriggerMode) == 0)
     return GvcpStatus::Busy;
-  const bool has_begun = instrument_.with([](LiveInstrument::Parts& parts) { return parts.camera.trigger(parts.now); });
-  return has_begun ? GvcpStatus::Success : GvcpStatus::Busy;
+  const bool is_heard = instrument_.with([](LiveInstrument::Parts& parts) {
+    const auto fault = parts.instrument.strike(FaultMoment::Exposure, parts.now, [](const PlannedFault& f) {
+      return traits(f.kind).device == FaultDevice::Camera;
+    });
+    return (fault && fault->kind == FaultKind::TriggerIgnored) || parts.camera.trigger(parts.now);
+  });
+  return is_heard ? GvcpStatus::Success : GvcpStatus::Busy;
 }
 
 }  // namespace gonio::sim

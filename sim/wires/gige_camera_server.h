@@ -61,6 +61,12 @@ class GigeCameraServer {
   [[nodiscard]] bool is_controller() const;
   void release_control();
 
+  // ---- faults ----
+  [[nodiscard]] bool is_active(FaultKind kind);
+  void follow_faults();
+  void put_on_stream(CameraFrame frame);
+  void spoil(const PlannedFault& fault, CameraFrame frame);
+
   LiveInstrument& instrument_;
   CameraIdentity identity_;
   FileDescriptor control_;
@@ -72,6 +78,15 @@ class GigeCameraServer {
   std::optional<sockaddr_in> controller_;
   Instant controller_seen_{};
   sockaddr_in sender_{};  ///< of the request being served
+  /// A frame that a fault keeps back.
+  struct LateFrame {
+    Instant due;
+    CameraFrame frame;
+  };
+  std::optional<LateFrame> late_;
+  std::optional<CameraFrame> last_frame_;  ///< as it was sent
+  bool is_unplugged_ = false;              ///< by a fault
+  bool is_taken_ = false;                  ///< by another controller
   std::atomic<bool> is_silent_{false};
   std::atomic<unsigned> power_ups_wanted_{0};
   unsigned power_ups_ = 0;

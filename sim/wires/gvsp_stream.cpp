@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "sim/wires/big_endian.h"
 #include "sim/wires/camera_registers.h"
@@ -68,10 +69,12 @@ void GvspStream::add(const CameraFrame& frame, const SentRegion& region, std::si
                      .receiver = receiver,
                      .leader = leader_of(frame, region),
                      .data = bytes_of(frame, region),
-                     .trailer = trailer_of(region)});
+                     .trailer = trailer_of(region),
+                     .loss = std::exchange(next_loss_, {})});
 }
 
 void GvspStream::send_packet(int socket, const Block& block, std::uint32_t packet, bool is_resent) {
+  if (block.loss.takes(packet) && (!is_resent || block.loss.is_for_good)) return;
   std::span<const std::uint8_t> part = block.leader;
   std::uint8_t format = Leader;
   if (packet == block.last_packet()) {

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <optional>
+#include <utility>
 
 namespace gonio::sim {
 namespace {
@@ -17,6 +20,17 @@ constexpr std::size_t kMostUnread = 64 * 1024;  // of a client that asks and doe
 constexpr std::size_t kMbapHeader = 6;          // of the MBAP header, up to and with the length
 constexpr std::size_t kShortest = 8;            // unit and function code
 constexpr std::size_t kLongest = 260;
+
+// The request's header with the length of an exception, unit, exception.
+std::vector<std::uint8_t> exception_frame(std::span<const std::uint8_t> request, std::uint8_t code) {
+  constexpr std::uint8_t kUnitAndException = 3;
+  std::vector<std::uint8_t> frame(request.begin(), request.begin() + kMbapHeader + 1);
+  frame[4] = 0;
+  frame[5] = kUnitAndException;
+  const auto pdu = exception_pdu(request.subspan(kMbapHeader + 1), code);
+  frame.insert(frame.end(), pdu.begin(), pdu.end());
+  return frame;
+}
 
 }  // namespace
 
@@ -56,15 +70,16 @@ void ModbusServer::run(const std::stop_token& stop) {
       const bool has_more = !client.to_send.empty();
       watched.push_back({client.socket.get(), static_cast<short>(has_more ? POLLIN | POLLOUT : POLLIN), 0});
     }
-    if (::poll(watched.data(), watched.size(), -1) < 0) continue;
+    if (::poll(watched.data(), watched.size(), patience_ms()) < 0) continue;
     drain(wake_up_);
+    release_late(instrument_.clock().now());
     std::size_t k = 2;
     for (Client& client : clients_) {
       const short events = watched[k++].revents;
       if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) receive(client);
       if (!client.is_gone && !client.to_send.empty()) send(client);
     }
-    if (is_refusing_) clients_.clear();
+    if (is_refusing_ || drops_clients_) drop_clients();
     clients_.remove_if([](const Client& client) { return client.is_gone; });
     if ((watched[1].revents & POLLIN) != 0) accept_clients();
   }
@@ -74,10 +89,10 @@ void ModbusServer::accept_clients() {
   for (;;) {
     FileDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (socket.get() < 0) return;
-    if (is_refusing_ || clients_.size() >= kMostClients) continue;  // closed at once
+    if (refuses() || clients_.size() >= kMostClients) continue;  // closed at once
     const int on = 1;
     setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    clients_.push_back({.socket = std::move(socket), .received = {}, .to_send = {}});
+    clients_.push_back({.socket = std::move(socket), .received = {}, .to_send = {}, .late = {}, .last_look = {}});
   }
 }
 
@@ -104,13 +119,71 @@ void ModbusServer::take_requests(Client& client) {
     }
     if (rest.size() < length) break;
     at += length;
-    if (is_silent_) continue;
-    const auto reply = instrument_.with(
-        [&](LiveInstrument::Parts& parts) { return reply_.answer(rest.first(length), parts.units, parts.now); });
-    client.to_send.insert(client.to_send.end(), reply.begin(), reply.end());
+    if (!is_silent_) answer(client, rest.first(length));
   }
   client.received.erase(client.received.begin(), client.received.begin() + static_cast<std::ptrdiff_t>(at));
   if (client.to_send.size() > kMostUnread) client.is_gone = true;
+}
+
+void ModbusServer::answer(Client& client, std::span<const std::uint8_t> request) {
+  const auto pdu = request.subspan(kMbapHeader + 1);
+  std::vector<std::uint8_t> reply;
+  const ExchangeFate fate = instrument_.with([&](LiveInstrument::Parts& parts) {
+    ExchangeFate asked = fate_of_exchange(parts, pdu);
+    if (asked.is_silent || asked.is_refused) return asked;
+    reply = asked.is(FaultKind::ReplyException) ? exception_frame(request, asked.fault->code())
+                                                : reply_.answer(request, parts.units, parts.now);
+    return asked;
+  });
+  drops_clients_ |= fate.is_refused;
+  if (reply.empty()) return;
+  FaultyReply out{.bytes = reply};
+  if (fate.fault) out = spoil_tcp(*fate.fault, reply, client.last_look);
+  if (exchange_kind(pdu, instrument_.scene().stage.registers) == ExchangeKind::Look)
+    client.last_look = std::move(reply);
+  drops_clients_ |= out.resets;
+  resets_clients_ |= out.resets;
+  if (out.late > Duration::zero())
+    client.late.push_back({instrument_.clock().now() + out.late, std::move(out.bytes)});
+  else
+    client.to_send.insert(client.to_send.end(), out.bytes.begin(), out.bytes.end());
+}
+
+void ModbusServer::release_late(Instant now) {
+  for (Client& client : clients_) {
+    while (!client.late.empty() && client.late.front().due <= now) {
+      const auto& bytes = client.late.front().bytes;
+      client.to_send.insert(client.to_send.end(), bytes.begin(), bytes.end());
+      client.late.pop_front();
+    }
+  }
+}
+
+int ModbusServer::patience_ms() const {
+  std::optional<Instant> due;
+  for (const Client& client : clients_) {
+    if (!client.late.empty()) due = std::min(due.value_or(Instant::max()), client.late.front().due);
+  }
+  if (!due) return -1;
+  const Duration left = std::max(*due - instrument_.clock().now(), Duration::zero());
+  return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count());
+}
+
+bool ModbusServer::refuses() {
+  return is_refusing_ || instrument_.with([](LiveInstrument::Parts& parts) {
+    return parts.instrument.faults().active(FaultKind::StageRefuse, parts.now) != nullptr;
+  });
+}
+
+// A connection that is closed with unsent bytes dropped ends in a reset.
+void ModbusServer::drop_clients() {
+  const linger at_once{.l_onoff = 1, .l_linger = 0};
+  for (const Client& client : clients_) {
+    if (resets_clients_) setsockopt(client.socket.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  }
+  clients_.clear();
+  drops_clients_ = false;
+  resets_clients_ = false;
 }
 
 void ModbusServer::send(Client& client) {

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <list>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include "base/result.h"
 #include "sim/wires/live_instrument.h"
 #include "sim/wires/modbus_reply.h"
+#include "sim/wires/reply_fault.h"
 #include "sim/wires/sockets.h"
 #include "sim/wires/stage_wire.h"
 
@@ -31,12 +33,20 @@ class ModbusServer final : public StageWire {
   void set_silent(bool on) override { is_silent_ = on; }
   /// Every connection is closed, and every new one at once.
   void set_refusing(bool on) override;
+  [[nodiscard]] bool can_have(FaultKind kind) const override { return kind != FaultKind::ReplyBadCrc; }
 
  private:
+  /// A reply that a fault keeps back.
+  struct Late {
+    Instant due;
+    std::vector<std::uint8_t> bytes;
+  };
   struct Client {
     FileDescriptor socket;
     std::vector<std::uint8_t> received;
     std::vector<std::uint8_t> to_send;
+    std::deque<Late> late;                ///< in the order of their time
+    std::vector<std::uint8_t> last_look;  ///< the last reply to a look
     bool is_gone = false;
   };
   ModbusServer(LiveInstrument& instrument, FileDescriptor listener, FileDescriptor wake_up, ModbusReply reply);
@@ -44,13 +54,20 @@ class ModbusServer final : public StageWire {
   void accept_clients();
   void receive(Client& client);
   void take_requests(Client& client);
+  void answer(Client& client, std::span<const std::uint8_t> request);
   void send(Client& client);
+  void release_late(Instant now);
+  void drop_clients();
+  [[nodiscard]] int patience_ms() const;
+  [[nodiscard]] bool refuses();
 
   LiveInstrument& instrument_;
   FileDescriptor listener_;
   FileDescriptor wake_up_;
   ModbusReply reply_;
   std::list<Client> clients_;
+  bool drops_clients_ = false;   ///< a fault closes every connection
+  bool resets_clients_ = false;  ///< and says nothing more
   std::atomic<bool> is_silent_{false};
   std::atomic<bool> is_refusing_{false};
   std::jthread thread_;  // last: it uses all of the above

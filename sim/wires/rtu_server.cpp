@@ -56,18 +56,6 @@ void RtuServer::set_refusing(bool on) {
   wake(wake_up_);
 }
 
-void RtuServer::set_fault(const RtuFault& fault) {
-  const std::lock_guard lock(fault_mutex_);
-  fault_ = fault;
-}
-
-std::optional<RtuFault> RtuServer::next_fault() {
-  const std::lock_guard lock(fault_mutex_);
-  if (!fault_ || fault_->exchanges <= 0) return std::nullopt;
-  --fault_->exchanges;
-  return fault_;
-}
-
 Duration RtuServer::time_of(std::size_t bytes) const {
   return seconds(static_cast<double>(bytes) * kBitsAByte / timing_.baud);
 }
@@ -86,9 +74,11 @@ void RtuServer::run(const std::stop_token& stop) {
   }
 }
 
-// Until a reply is due or a torn request has stopped for good; -1 when nothing is under way.
+// Until a reply is due, a torn request has stopped for good, or it is time to look whether the adapter is back; -1 when
+// nothing is under way.
 int RtuServer::patience_ms(Instant now) const {
-  Instant next = Instant::max();
+  if (reopens_) return 0;
+  Instant next = is_pulled_ ? now + kStopped : Instant::max();
   if (!to_send_.empty()) next = to_send_.front().due;
   if (!received_.empty()) next = std::min(next, last_byte_ + kStopped);
   if (next == Instant::max()) return -1;
@@ -96,12 +86,22 @@ int RtuServer::patience_ms(Instant now) const {
   return static_cast<int>(std::min<std::int64_t>(left.count(), 3'600'000));
 }
 
-// Follows `set_refusing`. A terminal that cannot be made is tried again at the next wake-up.
+bool RtuServer::refuses() {
+  if (!is_pulled_) return is_refusing_;
+  is_pulled_ = instrument_.with([](LiveInstrument::Parts& parts) {
+    return parts.instrument.faults().active(FaultKind::StageRefuse, parts.now) != nullptr;
+  });
+  return is_refusing_ || is_pulled_;
+}
+
+// Follows `set_refusing` and the faults. A terminal that cannot be made is tried again at the next wake-up.
 void RtuServer::plug() {
-  if (is_refusing_ == !pty_.has_value()) return;
+  const bool is_out = refuses();
+  if (std::exchange(reopens_, false)) pty_.reset();
+  if (is_out == !pty_.has_value()) return;
   received_.clear();
   to_send_.clear();
-  if (is_refusing_) {
+  if (is_out) {
     pty_.reset();
     ::unlink(link_.c_str());
   } else if (auto pty = SerialPty::open(link_)) {
@@ -143,18 +143,28 @@ void RtuServer::answer(std::span<const std::uint8_t> frame) {
   ++requests_;
   if (is_silent_ || to_send_.size() >= kMostToSend) return;
   const auto pdu = frame.subspan(1, frame.size() - 3);
-  const auto answered = instrument_.with(
-      [&](LiveInstrument::Parts& parts) { return reply_.answer_pdu(unit, pdu, parts.units, parts.now); });
-  const auto fault = next_fault();
-  const auto is = [&](RtuFault::Kind kind) { return fault && fault->kind == kind; };
-  if (is(RtuFault::Kind::Lost)) return;
-  auto bytes = rtu_frame(is(RtuFault::Kind::WrongUnit) ? static_cast<std::uint8_t>(unit + 1) : unit, answered);
-  Instant due = clock_.now() + time_of(frame.size() + bytes.size()) + timing_.turnaround;
-  if (is(RtuFault::Kind::Late)) due += fault->late;
-  if (is(RtuFault::Kind::BadCrc)) bytes.back() = static_cast<std::uint8_t>(~bytes.back());
-  if (is(RtuFault::Kind::Torn)) bytes.resize(bytes.size() / 2);
-  const auto after = [](Instant at, const Outgoing& other) { return at < other.due; };
-  to_send_.insert(std::upper_bound(to_send_.begin(), to_send_.end(), due, after), {due, std::move(bytes)});
+  std::vector<std::uint8_t> answered;
+  const ExchangeFate fate = instrument_.with([&](LiveInstrument::Parts& parts) {
+    ExchangeFate asked = fate_of_exchange(parts, pdu);
+    if (asked.is_silent || asked.is_refused) return asked;
+    answered = asked.is(FaultKind::ReplyException) ? exception_pdu(pdu, asked.fault->code())
+                                                   : reply_.answer_pdu(unit, pdu, parts.units, parts.now);
+    return asked;
+  });
+  is_pulled_ |= fate.is_refused;
+  if (answered.empty()) return;
+  auto bytes = rtu_frame(unit, answered);
+  FaultyReply out{.bytes = bytes};
+  if (fate.fault) out = spoil_rtu(*fate.fault, bytes, last_look_);
+  if (exchange_kind(pdu, instrument_.scene().stage.registers) == ExchangeKind::Look) last_look_ = std::move(bytes);
+  reopens_ |= out.resets;
+  if (!out.bytes.empty()) put_out(time_of(frame.size() + out.bytes.size()) + timing_.turnaround + out.late, out.bytes);
+}
+
+void RtuServer::put_out(Duration after, std::vector<std::uint8_t> bytes) {
+  const Instant due = clock_.now() + after;
+  const auto later = [](Instant at, const Outgoing& other) { return at < other.due; };
+  to_send_.insert(std::upper_bound(to_send_.begin(), to_send_.end(), due, later), {due, std::move(bytes)});
 }
 
 // What the terminal does not take is lost: nobody reads.

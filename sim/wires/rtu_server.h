@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -14,6 +13,7 @@
 #include "base/result.h"
 #include "sim/wires/live_instrument.h"
 #include "sim/wires/modbus_reply.h"
+#include "sim/wires/reply_fault.h"
 #include "sim/wires/serial_pty.h"
 #include "sim/wires/stage_wire.h"
 
@@ -23,14 +23,6 @@ namespace gonio::sim {
 struct RtuTiming {
   int baud = 115200;
   Duration turnaround = std::chrono::milliseconds(2);
-};
-
-/// What becomes of replies. The request is obeyed all the same.
-struct RtuFault {
-  enum class Kind : std::uint8_t { Lost, Late, Torn, BadCrc, WrongUnit };
-  Kind kind = Kind::Lost;
-  int exchanges = 1;  ///< of so many requests from now on
-  Duration late{};    ///< for Late: beyond its time
 };
 
 /// The stage on Modbus RTU, behind a link to a pseudo terminal. One thread; threads of callers: any.
@@ -50,8 +42,7 @@ class RtuServer final : public StageWire {
   void set_silent(bool on) override { is_silent_ = on; }
   /// The adapter is pulled out, and put back as a new terminal behind the same link.
   void set_refusing(bool on) override;
-  /// Replaces the fault before it.
-  void set_fault(const RtuFault& fault);
+  [[nodiscard]] bool can_have(FaultKind kind) const override { return kind != FaultKind::ReplyWrongTransaction; }
   /// Requests for this unit that came whole, since the start.
   [[nodiscard]] std::uint64_t requests() const { return requests_; }
 
@@ -69,7 +60,8 @@ class RtuServer final : public StageWire {
   void take_requests();
   void take_what_stopped(Instant now);
   void answer(std::span<const std::uint8_t> frame);
-  [[nodiscard]] std::optional<RtuFault> next_fault();
+  void put_out(Duration after, std::vector<std::uint8_t> bytes);
+  [[nodiscard]] bool refuses();
   void send_due(Instant now);
   [[nodiscard]] Duration time_of(std::size_t bytes) const;
 
@@ -83,8 +75,9 @@ class RtuServer final : public StageWire {
   std::vector<std::uint8_t> received_;
   Instant last_byte_{};
   std::deque<Outgoing> to_send_;
-  std::mutex fault_mutex_;  ///< guards the fault
-  std::optional<RtuFault> fault_;
+  std::vector<std::uint8_t> last_look_;  ///< the last reply to a look
+  bool is_pulled_ = false;               ///< a fault has the adapter out
+  bool reopens_ = false;                 ///< and back at once
   std::atomic<std::uint64_t> requests_{0};
   std::atomic<bool> is_silent_{false};
   std::atomic<bool> is_refusing_{false};

@@ -18,7 +18,7 @@ namespace gonio::drivers {
 namespace {
 
 using namespace std::chrono_literals;
-using Kind = sim::RtuFault::Kind;
+using Kind = sim::FaultKind;
 
 constexpr Duration kReplyTimeout = 250ms;
 constexpr int kTries = 100;  // of what a slow machine may let time out
@@ -40,6 +40,14 @@ class RtuStageWire : public testing::Test {
                               .pause = 5ms});
     stage.emplace(bus->normal(), config, clock);
     line.emplace(bus->urgent(), bus->prompt(), config.registers);
+  }
+
+  // Of the next request, whatever it is.
+  void arm(sim::FaultKind kind, double late_wall_s = 0.0) {
+    sim::PlannedFault fault{.kind = kind};
+    fault.values[sim::FaultParameter::Exchange] = static_cast<double>(sim::ExchangeKind::Any);
+    fault.values[sim::FaultParameter::LateWallS] = late_wall_s;
+    instrument.with([&](sim::LiveInstrument::Parts& parts) { EXPECT_TRUE(parts.instrument.arm(fault, parts.now)); });
   }
 
   template <class Call>
@@ -76,7 +84,8 @@ TEST_F(RtuStageWire, ReadsAStateAndHomesAndHaltsAndBeats) {
 
 struct NamedFault {
   const char* name;
-  sim::RtuFault fault;
+  sim::FaultKind kind;
+  double late_wall_s = 0.0;
 };
 
 class RtuStageWireFault : public RtuStageWire, public testing::WithParamInterface<NamedFault> {};
@@ -88,10 +97,10 @@ TEST_P(RtuStageWireFault, IsRetriedAndNoMotionStartsTwice) {
     return instrument.with(
         [](sim::LiveInstrument::Parts& parts) { return parts.instrument.stage().motion_commands(); });
   };
-  server->set_fault(GetParam().fault);
+  arm(GetParam().kind, GetParam().late_wall_s);
 
   const auto state = until_it_works([&] { return stage->read_state(); });
-  server->set_fault(GetParam().fault);
+  arm(GetParam().kind, GetParam().late_wall_s);
   const auto token = stage->start_homing(1);
 
   EXPECT_EQ(state->boot_counter, 1U);
@@ -102,18 +111,17 @@ TEST_P(RtuStageWireFault, IsRetriedAndNoMotionStartsTwice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfReplies, RtuStageWireFault,
-                         testing::Values(NamedFault{"Lost", {.kind = Kind::Lost}},
-                                         NamedFault{"LateByHalfATimeout", {.kind = Kind::Late, .late = 375ms}},
-                                         NamedFault{"LateBeyondTwoTimeouts", {.kind = Kind::Late, .late = 625ms}},
-                                         NamedFault{"LateByThreeTimeouts", {.kind = Kind::Late, .late = 1000ms}},
-                                         NamedFault{"Torn", {.kind = Kind::Torn}},
-                                         NamedFault{"BadCrc", {.kind = Kind::BadCrc}},
-                                         NamedFault{"WrongUnit", {.kind = Kind::WrongUnit}}),
+                         testing::Values(NamedFault{"Lost", Kind::ReplyLost},
+                                         NamedFault{"LateByHalfATimeout", Kind::ReplyLate, 0.375},
+                                         NamedFault{"LateBeyondTwoTimeouts", Kind::ReplyLate, 0.625},
+                                         NamedFault{"LateByThreeTimeouts", Kind::ReplyLate, 1.000},
+                                         NamedFault{"Torn", Kind::ReplyTorn}, NamedFault{"BadCrc", Kind::ReplyBadCrc},
+                                         NamedFault{"WrongUnit", Kind::ReplyWrongUnit}),
                          [](const auto& fault) { return std::string(fault.param.name); });
 
 TEST_F(RtuStageWire, StopsAStageThatAnswersNobody) {
   until_it_works([&] { return stage->read_state(); });
-  server->set_fault({.kind = Kind::Lost, .exchanges = 1});
+  arm(Kind::ReplyLost);
   std::atomic<bool> is_over{false};
   auto looking = std::async(std::launch::async, [&] {
     while (!is_over) (void)stage->read_state();

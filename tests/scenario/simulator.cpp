@@ -160,6 +160,17 @@ void Simulator::refuse_stage(bool on) const {
   order(json{{"fault", "stage-refuse"}, {"on", on}}.dump());
 }
 
+std::string Simulator::fault(const std::string& name, const std::string& keys) const {
+  const std::string line = R"({"fault":")" + name + '"' + (keys.empty() ? "" : ",") + keys + "}";
+  std::string answer = ask(line);
+  if (!json::parse(answer).value("ok", false)) throw std::runtime_error("goniosim refused " + line + ": " + answer);
+  return answer;
+}
+
+void Simulator::end_fault(const std::string& name) const {
+  order(json{{"fault", name}, {"on", false}}.dump());
+}
+
 void Simulator::block_axis(const std::string& axis, bool on) const {
   order(json{{"fault", "axis-blocked"}, {"axis", axis}, {"on", on}}.dump());
 }

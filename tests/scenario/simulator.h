@@ -74,8 +74,14 @@ class Simulator {
   /// As if the door of the dark room were open.
   void open_interlock(bool on) const;
 
- private:
+  /// Arms a fault by name, with more keys of the control socket ("\"after\":2"); the answer.
+  std::string fault(const std::string& name, const std::string& keys) const;
+  /// A fault of that name is over.
+  void end_fault(const std::string& name) const;
+  /// One line of the control socket.
   [[nodiscard]] std::string ask(const std::string& line) const;
+
+ private:
   void order(const std::string& line) const;
 
   std::string state_;

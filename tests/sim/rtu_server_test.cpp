@@ -96,6 +96,13 @@ class RtuServerTest : public testing::Test {
     EXPECT_TRUE(server.has_value()) << describe(server.error());
     server_ = *std::move(server);
   }
+  // Of the next request, whatever it is.
+  void arm(FaultKind kind) {
+    PlannedFault fault{.kind = kind};
+    fault.values[FaultParameter::Exchange] = static_cast<double>(ExchangeKind::Any);
+    fault.values[FaultParameter::LateWallS] = 0.1;
+    instrument_.with([&](LiveInstrument::Parts& parts) { EXPECT_TRUE(parts.instrument.arm(fault, parts.now)); });
+  }
   gonio::test::TemporaryFolder folder_;
   const std::string link_ = folder_ / "stage.tty";
   ManualClock clock_;
@@ -162,13 +169,13 @@ TEST_F(RtuServerTest, SpoilsRepliesByNameAndObeysAllTheSame) {
   Master master(link_);
   const std::string write = "01 06 0000 BEEF b9e6";
 
-  server_->set_fault({.kind = RtuFault::Kind::BadCrc});
+  arm(FaultKind::ReplyBadCrc);
   EXPECT_EQ(master.ask(write, 8), bytes("01 06 0000 BEEF b919"));
-  server_->set_fault({.kind = RtuFault::Kind::WrongUnit});
+  arm(FaultKind::ReplyWrongUnit);
   EXPECT_EQ(master.ask(write, 8).front(), 2);
-  server_->set_fault({.kind = RtuFault::Kind::Torn});
+  arm(FaultKind::ReplyTorn);
   EXPECT_EQ(master.ask(write, 4), bytes("01 06 0000"));
-  server_->set_fault({.kind = RtuFault::Kind::Lost});
+  arm(FaultKind::ReplyLost);
   master.send("01 10 00A0 0003 06 0000 0007 5A5A eb58");
   EXPECT_EQ(master.ask("01 03 0001 0002 95cb", 9), bytes("01 03 04 474F 0001 1e90")) << "the halt is not answered";
 
@@ -177,7 +184,7 @@ TEST_F(RtuServerTest, SpoilsRepliesByNameAndObeysAllTheSame) {
 
 TEST_F(RtuServerTest, SendsALateReplyAfterThatToALaterRequest) {
   Master master(link_);
-  server_->set_fault({.kind = RtuFault::Kind::Late, .late = 100ms});
+  arm(FaultKind::ReplyLate);
   master.send("01 06 0000 BEEF b9e6");
 
   const auto first = master.ask("01 03 0001 0002 95cb", 9);
