@@ -203,6 +203,7 @@ LampBand read_lamp_band(TomlReader& table) {
   LampBand band;
   band.low = table.number("monitor_low", kNotNegative);
   band.high = table.number("monitor_high", {.least = band.low});
+  band.least_scatter = table.number_or("monitor_least_scatter", 0.0, kFraction);
   return band;
 }
 

@@ -62,6 +62,7 @@ struct ConeAngles {
 struct LampBand {
   double low = 0.0;
   double high = 0.0;
+  double least_scatter = 0.0;  ///< relative, of one sample: a monitor that scatters less is stuck; 0: not looked at
 };
 
 /// The instrument as its file describes it: everything that goniod knows of it. A value: share it as const.

@@ -1,6 +1,9 @@
 #include "daemon/engine/stage_actor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <variant>
@@ -67,7 +70,38 @@ Result<drivers::StageState> StageActor::look() {
   if (!state) return state;
   if (boot_counter_ && *boot_counter_ != state->boot_counter) slack_taken_up_.fill(false);
   boot_counter_ = state->boot_counter;
+  note_rest(*state);
   return state;
+}
+
+// Kept until another motion is accepted: an axis that moves by itself afterwards is found however late it is looked at.
+void StageActor::note_rest(const drivers::StageState& seen) {
+  if (seen.moving) return;
+  const bool is_known =
+      left_ && left_->boot_counter == seen.boot_counter && left_->accepted_token == seen.accepted_token;
+  if (!is_known) left_ = seen;
+}
+
+// Encoders count from one zero: when a reading has changed and nothing was asked to move, that zero is not to be
+// trusted, and a move by the encoder would go to a wrong place and call it right.
+Result<void> StageActor::check_rest(const MoveTo& request, const drivers::StageState& seen) const {
+  const bool is_at_rest =
+      left_ && !seen.moving && left_->boot_counter == seen.boot_counter && left_->accepted_token == seen.accepted_token;
+  if (!is_at_rest) return {};
+  for (const stage::Axis axis : stage::kAllAxes) {
+    const std::size_t i = stage::index_of(axis);
+    if (!left_->axes[i].homed || !seen.axes[i].homed) continue;
+    const double moved = std::abs(seen.axes[i].position - left_->axes[i].position);
+    if (moved <= config_.axis(axis).window) continue;
+    return failure({.code = ErrorCode::OutOfTolerance,
+                    .device = "stage",
+                    .tried = drivers::motion_text(request.target),
+                    .seen = fmt::format("{} shows {:.4f} {} and nothing has moved it: home the stage",
+                                        stage::axis_name(axis), seen.axes[i].position, stage::axis_unit(axis)),
+                    .limit = fmt::format("{:.4f} +- {:.4f} {}, where it was left", left_->axes[i].position,
+                                         config_.axis(axis).window, stage::axis_unit(axis))});
+  }
+  return {};
 }
 
 void StageActor::begin(const StageRequest& request, Instant now) {
@@ -95,6 +129,7 @@ Result<StageActor::Job> StageActor::start(const MoveTo& request) {
     GONIO_TRY(add_shutters(job, request, *before));
     return job;
   }
+  GONIO_TRY(check_rest(request, *before));
   GONIO_TRY(check_arms_are_known(*before, request.target));
   auto legs = drivers::plan_route(config_, drivers::positions_of(*before), request.target, slack_taken_up_);
   if (!legs) return failure(legs.error());

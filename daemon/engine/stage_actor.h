@@ -49,6 +49,8 @@ class StageActor {
   };
 
   [[nodiscard]] Result<drivers::StageState> look();
+  void note_rest(const drivers::StageState& seen);
+  [[nodiscard]] Result<void> check_rest(const MoveTo& request, const drivers::StageState& seen) const;
   void begin(const StageRequest& request, Instant now);
   [[nodiscard]] Result<Job> start(const MoveTo& request);
   [[nodiscard]] Result<Job> start(const Home& request);
@@ -68,6 +70,7 @@ class StageActor {
   std::optional<Job> job_;
   std::optional<std::uint32_t> boot_counter_;  ///< as last seen
   drivers::SlackTakenUp slack_taken_up_{};     ///< what moves that ended well have left
+  std::optional<drivers::StageState> left_;    ///< the first state at rest after the last motion
 };
 
 }  // namespace gonio::daemon

@@ -20,7 +20,7 @@ namespace gonio::daemon {
 /// One thing that the instrument is doing for a scan: a move, and the exposures after it.
 struct Job {
   enum class Kind : std::uint8_t { Item, Dark, Park };
-  enum class Phase : std::uint8_t { ToMove, Moving, InPlace, Exposing };
+  enum class Phase : std::uint8_t { ToMove, Homing, Moving, InPlace, Exposing };
 
   Kind kind = Kind::Item;
   ItemKey item;  ///< of an Item
@@ -109,7 +109,8 @@ struct ActiveScan {
   std::optional<std::size_t> highest_rung;
   int most_frames = 1;
   int dark_failures = 0;
-  std::int64_t uncommitted = 0;  ///< items accepted here whose commit has not returned
+  bool is_position_in_doubt = false;  ///< an axis was not where it was left: home before the next move
+  std::int64_t uncommitted = 0;       ///< items accepted here whose commit has not returned
   std::optional<Job> job;
   DurationStatistics sample_time;
   DurationStatistics reference_time;

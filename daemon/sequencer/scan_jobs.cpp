@@ -106,6 +106,11 @@ void Sequencer::Impl::start_park(Instant now) {
 void Sequencer::Impl::drive_job(Instant now) {
   Job& job = *scan->job;
   if (!channels_are_free()) return;
+  if (job.phase == Job::Phase::ToMove && scan->is_position_in_doubt) {
+    job.phase = Job::Phase::Homing;
+    job.asked = now;
+    return ask_stage(StageUse::HomeAgain, gonio::daemon::Home{.epoch = epoch});
+  }
   if (job.phase == Job::Phase::ToMove) {
     const bool is_lit = job.kind == Job::Kind::Item;
     job.phase = Job::Phase::Moving;
@@ -125,6 +130,14 @@ void Sequencer::Impl::drive_job(Instant now) {
   }
   // At most one item is ever uncommitted: its commit returns before the next light is taken.
   if (!has_uncommitted_item()) begin_exposure(now);
+}
+
+void Sequencer::Impl::on_homed_again(const Result<drivers::StageState>& state, Instant now) {
+  if (!scan || !scan->job) return;
+  if (!state) return job_failed(state.error(), now);
+  scan->is_position_in_doubt = false;
+  scan->job->time.move += now - scan->job->asked;
+  scan->job->phase = Job::Phase::ToMove;
 }
 
 void Sequencer::Impl::on_moved(const Result<drivers::StageState>& state, Instant now) {
@@ -254,9 +267,22 @@ void Sequencer::Impl::join_exposure(Instant now) {
 
 bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) {
   const LampBand& band = config.instrument.lamp;
-  if (gate.monitor_mean >= band.low && gate.monitor_mean <= band.high) return false;
-  add_hold(HoldName::Lamp, "stage",
-           fmt::format("lamp monitor {:.4f}, limits {:.4f} to {:.4f}", gate.monitor_mean, band.low, band.high), now);
+  const double scatter = gate.monitor_se * std::sqrt(static_cast<double>(gate.monitor_samples));
+  const double least = band.least_scatter * gate.monitor_mean;
+  if (gate.monitor_mean < band.low || gate.monitor_mean > band.high) {
+    add_hold(HoldName::Lamp, "stage",
+             fmt::format("lamp monitor {:.4g}, limits {:.4g} to {:.4g}: the lamp, or its monitor, has failed",
+                         gate.monitor_mean, band.low, band.high),
+             now);
+  } else if (gate.monitor_samples > 1 && scatter < least) {
+    add_hold(
+        HoldName::Lamp, "stage",
+        fmt::format("lamp monitor stuck at {:.6g}: its {} samples scatter by {:.2g}, a live one's by {:.2g} or more",
+                    gate.monitor_mean, gate.monitor_samples, scatter, least),
+        now);
+  } else {
+    return false;
+  }
   return true;
 }
 
@@ -327,6 +353,7 @@ void Sequencer::Impl::drop_job(Instant now) {
 void Sequencer::Impl::job_failed(const Error& error, Instant now) {
   disown_calls();
   if (error.code == ErrorCode::Stopped || error.code == ErrorCode::StaleEpoch) stage_stopped = true;
+  if (error.code == ErrorCode::OutOfTolerance && error.device == "stage") scan->is_position_in_doubt = true;
   const bool is_item = scan->job->kind == Job::Kind::Item;
   if (is_item && reaction_to(error.code) != Reaction::Hold) return item_failed(error, now);
   if (scan->job->kind == Job::Kind::Dark && reaction_to(error.code) != Reaction::Hold) return dark_failed(error, now);

@@ -188,6 +188,7 @@ void Sequencer::Impl::on_prepared_step(const Result<drivers::StageState>& state,
                                        Instant now) {
   if (!scan) return;
   if (!state) return add_hold(hold_for(state.error().code), "stage", describe(state.error()), now);
+  if (next == ActiveScan::Preparation::Verified) scan->is_position_in_doubt = false;  // it was homed
   scan->preparation = next;
 }
 
@@ -215,7 +216,7 @@ void Sequencer::Impl::verify_stage(const drivers::StageState& state, Instant now
   if (state.gate.open) {
     return look_again(config.instrument.detector.longest_exposure, "an exposure does not end", now);
   }
-  scan->preparation = state.homed ? Preparation::Verified : Preparation::Home;
+  scan->preparation = state.homed && !scan->is_position_in_doubt ? Preparation::Verified : Preparation::Home;
 }
 
 void Sequencer::Impl::look_again(Duration patience, const std::string& what, Instant now) {

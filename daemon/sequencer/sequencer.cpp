@@ -113,6 +113,8 @@ void Sequencer::Impl::on_message(const StageAnswer& answer, Instant now) {
       return on_before(answer.state, now);
     case StageUse::After:
       return on_after(answer.state, now);
+    case StageUse::HomeAgain:
+      return on_homed_again(answer.state, now);
     case StageUse::Move:
       return on_moved(answer.state, now);
     case StageUse::Gate:
@@ -238,6 +240,8 @@ std::string_view Sequencer::Impl::doing() const {
   if (scan->state != ScanState::Running && scan->state != ScanState::Finishing) return scan_state_name(scan->state);
   if (!scan->job) return "committing";
   switch (scan->job->phase) {
+    case Job::Phase::Homing:
+      return "homing";
     case Job::Phase::ToMove:
     case Job::Phase::Moving:
       return "moving";

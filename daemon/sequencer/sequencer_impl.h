@@ -27,6 +27,7 @@ struct Sequencer::Impl {
     Look,
     Home,
     Reset,
+    HomeAgain,
     Darken,
     Move,
     Gate,
@@ -113,6 +114,7 @@ struct Sequencer::Impl {
   void on_before(const Result<drivers::StageState>& state, Instant now);
   void on_after(const Result<drivers::StageState>& state, Instant now);
   void on_monitor(const Result<PowerRecord>& reading, Instant now);
+  void on_homed_again(const Result<drivers::StageState>& state, Instant now);
   void on_moved(const Result<drivers::StageState>& state, Instant now);
   void on_gate(const Result<drivers::StageState>& state, Instant now);
   void on_frame(const Result<FrameSummary>& frame, Instant now);

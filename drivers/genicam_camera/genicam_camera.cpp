@@ -107,6 +107,7 @@ Result<void> GenicamCamera::write_exposure(const ExposureSettings& settings) {
 Result<void> GenicamCamera::restart_stream() {
   link_.stop();
   last_id_.reset();
+  last_time_ns_ = 0;
   GONIO_TRY(link_.start());
   needs_new_stream_ = false;
   return {};
@@ -139,6 +140,7 @@ Result<void> GenicamCamera::drain() {
     if (!stale) return failure(stale.error());
     if (!*stale) return {};
     last_id_ = (*stale)->frame_id;
+    last_time_ns_ = (*stale)->camera_time_ns;
   }
   needs_new_stream_ = true;
   return failure(
@@ -181,6 +183,13 @@ Result<Frame> GenicamCamera::accepted(CameraFrame frame, Instant now) {
   if (!frame.is_complete) {
     return failure(error(ErrorCode::IncompleteData, tried, fmt::format("frame {}: {}", frame.frame_id, frame.trouble)));
   }
+  // Two exposures do not end at once: this is the light of the frame before under a number of its own.
+  if (frame.camera_time_ns != 0 && frame.camera_time_ns == last_time_ns_) {
+    needs_new_stream_ = true;
+    return failure(
+        error(ErrorCode::StaleData, tried, fmt::format("frame {} bears the time of the frame before", frame.frame_id)));
+  }
+  last_time_ns_ = frame.camera_time_ns;
   if (frame.width != config_.format.width || frame.height != config_.format.height) {
     return failure(error(ErrorCode::IncompleteData, tried, fmt::format("{} x {} px", frame.width, frame.height),
                          fmt::format("{} x {} px", config_.format.width, config_.format.height)));

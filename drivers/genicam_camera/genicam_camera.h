@@ -52,6 +52,7 @@ class GenicamCamera final : public Detector {
   ExposureSettings wanted_;
   ExposureSettings taken_;                ///< as read back
   std::optional<std::uint64_t> last_id_;  ///< nothing: the stream is new
+  std::uint64_t last_time_ns_ = 0;        ///< of the last frame, as the camera says; 0: none yet
   std::optional<Instant> triggered_;      ///< set while a frame is awaited
   std::optional<double> temperature_c_;
   std::optional<Instant> temperature_at_;

@@ -42,7 +42,9 @@ class Outcome {
   }
   [[nodiscard]] bool failed() const { return error_ != nullptr; }
   [[nodiscard]] Error as_error(std::string tried) const {
-    return {.code = code(), .device = "detector", .tried = std::move(tried), .seen = error_->message};
+    Error error{.code = code(), .device = "detector", .tried = std::move(tried), .seen = error_->message};
+    if (error.code == ErrorCode::ControlLost) error.seen = "another controller has the camera";
+    return error;
   }
 
  private:

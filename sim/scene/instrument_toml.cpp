@@ -101,6 +101,13 @@ std::string detector_section(const Scene& scene, const WireAddresses& addresses)
       told.u_linearity.value_or(spec.u_linearity), told.u_dark_drift_dn_per_s * scene.time_scale);
 }
 
+// Far below what any sample of few may show by chance, far above a number that does not move.
+std::string least_scatter_line(const LampSpec& lamp, bool is_radiometer) {
+  constexpr double kShare = 1e-3;
+  if (is_radiometer || lamp.monitor_noise == 0.0) return {};
+  return fmt::format("monitor_least_scatter = {:.6g}\n", kShare * lamp.monitor_noise);
+}
+
 std::string uncertainty_sections(const Scene& scene) {
   const AngleSpec& angles = scene.angles;
   const LampSpec& lamp = scene.lamp;
@@ -108,16 +115,19 @@ std::string uncertainty_sections(const Scene& scene) {
   const double monitor = lamp.power * (meter == nullptr ? 1.0 : meter->watts);
   const ToldSpec& told = scene.told;
   return fmt::format(
-      "\n[angles]\nu_zero_theta_i_deg = {:.10g}\nu_zero_theta_r_deg = {:.10g}\nu_zero_phi_r_deg = {:.10g}\n"
-      "u_repeat_deg = {:.10g}\ndetector_half_cone_deg = {:.10g}\nsource_half_cone_deg = {:.10g}\n"
-      "\n[lamp]\nu_after_monitor = {}\ncorrelation_s = {}\nu_reproducibility = {}\nmonitor_low = {:.6g}\nmonitor_high "
-      "= {:.6g}\n",
-      in_degrees(told.u_zero_theta_i.value_or(angles.u_zero_theta_i)),
-      in_degrees(told.u_zero_theta_r.value_or(angles.u_zero_theta_r)),
-      in_degrees(told.u_zero_phi_r.value_or(angles.u_zero_phi_r)), in_degrees(told.u_repeat.value_or(angles.u_repeat)),
-      in_degrees(told.detector_half_cone), in_degrees(told.source_half_cone),
-      told.u_after_monitor.value_or(lamp.u_after_monitor), wall_s(scene, lamp.correlation_s),
-      told.u_reproducibility.value_or(lamp.u_reproducibility), 0.2 * monitor, 5.0 * monitor);
+             "\n[angles]\nu_zero_theta_i_deg = {:.10g}\nu_zero_theta_r_deg = {:.10g}\nu_zero_phi_r_deg = {:.10g}\n"
+             "u_repeat_deg = {:.10g}\ndetector_half_cone_deg = {:.10g}\nsource_half_cone_deg = {:.10g}\n"
+             "\n[lamp]\nu_after_monitor = {}\ncorrelation_s = {}\nu_reproducibility = {}\nmonitor_low = "
+             "{:.6g}\nmonitor_high "
+             "= {:.6g}\n",
+             in_degrees(told.u_zero_theta_i.value_or(angles.u_zero_theta_i)),
+             in_degrees(told.u_zero_theta_r.value_or(angles.u_zero_theta_r)),
+             in_degrees(told.u_zero_phi_r.value_or(angles.u_zero_phi_r)),
+             in_degrees(told.u_repeat.value_or(angles.u_repeat)), in_degrees(told.detector_half_cone),
+             in_degrees(told.source_half_cone), told.u_after_monitor.value_or(lamp.u_after_monitor),
+             wall_s(scene, lamp.correlation_s), told.u_reproducibility.value_or(lamp.u_reproducibility), 0.2 * monitor,
+             5.0 * monitor) +
+         least_scatter_line(lamp, meter != nullptr);
 }
 
 }  // namespace

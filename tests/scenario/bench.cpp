@@ -15,8 +15,8 @@ std::string scene_text(const SceneOptions& options) {
   std::ostringstream text;
   text << std::boolalpha << "[scene]\nname = \"scenario\"\nbench = \"" << kScenes
        << "/bench.toml\"\nseed = " << options.seed << "\ntime_scale = " << std::showpoint << options.time_scale
-       << "\ndraw_errors = " << options.draw_errors << "\n[sample]\nmodel = \"lambertian\"\nrho = 0.5\n"
-       << options.more;
+       << "\ndraw_errors = " << options.draw_errors << "\n[sample]\n"
+       << options.sample << options.more;
   return text.str();
 }
 

@@ -20,11 +20,12 @@ struct SceneOptions {
   double time_scale = 40.0;
   bool draw_errors = true;
   std::uint64_t seed = 1;
+  std::string sample = "model = \"lambertian\"\nrho = 0.5\n";
   std::string stage_wire = "tcp";  ///< or "rtu"; of the simulator, not of the scene's file
   std::string more{};              ///< sections that are added to the scene's file
   long history = 0;                ///< moves and exposures that the simulator remembers: noise starts after them
 };
-/// A grey Lambertian card on the bench of sim/scenes.
+/// A card on the bench of sim/scenes.
 [[nodiscard]] std::string scene_text(const SceneOptions& options);
 
 /// The lists of a small plan on the scenes' reference at 568 nm.

@@ -363,6 +363,26 @@ TEST_F(StageActorTest, NoticesAPowerCycleWhileItWatchesTheGate) {
   EXPECT_EQ(answers[1].state.error().code, ErrorCode::PositionLost);
 }
 
+TEST_F(StageActorTest, RefusesToMoveByAnEncoderThatChangedByItselfUntilTheStageIsHomed) {
+  ask(move(1, 10.0));
+  run_for_answers(1);
+  stage.state.axes[stage::index_of(Axis::ThetaI)].position += 1.0;
+  ask(move(2, 20.0));
+  ask(move(3, 20.0));
+  run_for_answers(3);
+  ask(Home{4});
+  run_for_answers(4);
+  ask(move(5, 20.0));
+  run_for_answers(5);
+
+  for (const std::size_t k : {1U, 2U}) {
+    ASSERT_FALSE(answers[k].state.has_value());
+    EXPECT_EQ(answers[k].state.error().code, ErrorCode::OutOfTolerance);
+    EXPECT_THAT(describe(answers[k].state.error()), HasSubstr("theta_i shows 1.0000 deg and nothing has moved it"));
+  }
+  EXPECT_TRUE(answers[3].state && answers[4].state);
+}
+
 TEST_F(StageActorTest, SaysBusyToOneRequestTooMany) {
   ask(move(1, 10.0));
   for (Ticket ticket = 2; ticket <= 2 + StageActor::kMostWaiting; ++ticket) ask(ResetStage{ticket, 4});

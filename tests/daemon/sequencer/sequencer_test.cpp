@@ -187,6 +187,19 @@ TEST_F(SequencerScan, HoldsOverlapAndTheScanRunsWhenTheSetIsEmpty) {
   EXPECT_EQ(rig.state_of(id), ScanState::Done);
 }
 
+TEST(SequencerLamp, HoldsTheScanWhenItsMonitorDoesNotMove) {
+  Instrument instrument = bench_instrument();
+  instrument.lamp.least_scatter = 1e-6;
+  ScanRig rig(std::move(instrument));
+  const ScanId id = rig.submit(plan_of_three());
+
+  rig.run_to_rest();  // the scripted monitor always says the same
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Holding);
+  EXPECT_EQ(rig.status().active->holds[0].name, HoldName::Lamp);
+  EXPECT_NE(rig.status().active->holds[0].reason.find("stuck at 1"), std::string::npos);
+}
+
 TEST_F(SequencerScan, FinishEndsEarlyWithDataKeptAndAClosingDark) {
   const ScanId id = rig.submit(plan_of_three());
   run_to_item(2);
@@ -265,6 +278,25 @@ TEST_F(SequencerScan, StopAtEveryStepDropsTheItemHoldsAndGoesOnAfterResetAndResu
     EXPECT_EQ(stopped.info(id).counts.accepted, 6);
     if (testing::Test::HasFailure()) return;
   }
+}
+
+TEST_F(SequencerScan, HomesBeforeItTriesAgainWhenAnAxisWasNotWhereItWasLeft) {
+  bool has_slipped = false;
+  rig.world.move_error = [&](const MoveTo& to) -> std::optional<Error> {
+    const auto& theta_r = to.target[stage::index_of(stage::Axis::ThetaR)];
+    if (has_slipped || !theta_r || *theta_r < 59.0) return std::nullopt;
+    has_slipped = true;
+    rig.world.stage.homed = false;  // only homing sets it again
+    return Error{.code = ErrorCode::OutOfTolerance, .device = "stage"};
+  };
+  const ScanId id = rig.submit(plan_of_three());
+
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Done);
+  EXPECT_TRUE(has_slipped && rig.world.stage.homed);
+  EXPECT_EQ(accepted(), 6);
+  EXPECT_EQ(rig.count("SELECT count(*) FROM attempt WHERE error_code = 'out-of-tolerance'"), 1);
 }
 
 TEST_F(SequencerScan, ALateMoveIsTriedAgainThenSkippedAndRecorded) {
