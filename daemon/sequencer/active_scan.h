@@ -109,7 +109,7 @@ struct ActiveScan {
   std::optional<std::size_t> highest_rung;
   int most_frames = 1;
   int dark_failures = 0;
-  bool is_position_in_doubt = false;  ///< an axis was not where it was left: home before the next move
+  bool is_position_in_doubt = false;  ///< an axis was not where it was left or sent: home before the next move
   std::int64_t uncommitted = 0;       ///< items accepted here whose commit has not returned
   std::optional<Job> job;
   DurationStatistics sample_time;

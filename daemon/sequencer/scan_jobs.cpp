@@ -353,7 +353,8 @@ void Sequencer::Impl::drop_job(Instant now) {
 void Sequencer::Impl::job_failed(const Error& error, Instant now) {
   disown_calls();
   if (error.code == ErrorCode::Stopped || error.code == ErrorCode::StaleEpoch) stage_stopped = true;
-  if (error.code == ErrorCode::OutOfTolerance && error.device == "stage") scan->is_position_in_doubt = true;
+  const bool was_elsewhere = error.code == ErrorCode::OutOfTolerance || error.code == ErrorCode::MotionLate;
+  if (was_elsewhere && error.device == "stage") scan->is_position_in_doubt = true;
   const bool is_item = scan->job->kind == Job::Kind::Item;
   if (is_item && reaction_to(error.code) != Reaction::Hold) return item_failed(error, now);
   if (scan->job->kind == Job::Kind::Dark && reaction_to(error.code) != Reaction::Hold) return dark_failed(error, now);
