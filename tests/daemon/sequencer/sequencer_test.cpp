@@ -188,7 +188,7 @@ TEST_F(SequencerScan, HoldsOverlapAndTheScanRunsWhenTheSetIsEmpty) {
 }
 
 TEST(SequencerLamp, HoldsTheScanWhenItsMonitorDoesNotMove) {
-  Instrument instrument = bench_instrument();
+  Instrument instrument = test::bench_instrument();
   instrument.lamp.least_scatter = 1e-6;
   ScanRig rig(std::move(instrument));
   const ScanId id = rig.submit(plan_of_three());
