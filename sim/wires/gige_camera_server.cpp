@@ -188,7 +188,7 @@ void GigeCameraServer::spoil(const PlannedFault& fault, CameraFrame frame) {
       stream_.lose_packets(fault.packets(), fault.kind == FaultKind::PacketsGone);
       return put_on_stream(std::move(frame));
     case FaultKind::FrameSaturated:
-      std::ranges::fill(frame.pixels, static_cast<std::uint16_t>(kFullScaleDn));
+      std::ranges::fill(frame.pixels, static_cast<std::uint16_t>(instrument_.scene().detector.full_scale_dn()));
       return put_on_stream(std::move(frame));
     default:
       return put_on_stream(std::move(frame));
