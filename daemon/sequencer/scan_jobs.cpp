@@ -266,6 +266,7 @@ void Sequencer::Impl::join_exposure(Instant now) {
 }
 
 bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) {
+  constexpr std::uint32_t kFewestToJudge = 4;  // two samples of a live one may well be the same
   const LampBand& band = config.instrument.lamp;
   const double scatter = gate.monitor_se * std::sqrt(static_cast<double>(gate.monitor_samples));
   const double least = band.least_scatter * gate.monitor_mean;
@@ -274,7 +275,7 @@ bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) 
              fmt::format("lamp monitor {:.4g}, limits {:.4g} to {:.4g}: the lamp, or its monitor, has failed",
                          gate.monitor_mean, band.low, band.high),
              now);
-  } else if (gate.monitor_samples > 1 && scatter < least) {
+  } else if (gate.monitor_samples >= kFewestToJudge && scatter < least) {
     add_hold(
         HoldName::Lamp, "stage",
         fmt::format("lamp monitor stuck at {:.6g}: its {} samples scatter by {:.2g}, a live one's by {:.2g} or more",
