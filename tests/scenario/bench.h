@@ -22,6 +22,7 @@ struct SceneOptions {
   std::uint64_t seed = 1;
   std::string sample = "model = \"lambertian\"\nrho = 0.5\n";
   std::string stage_wire = "tcp";  ///< or "rtu"; of the simulator, not of the scene's file
+  std::string stage = "goniod";    ///< our own controller, or "drives"
   std::string more{};              ///< sections that are added to the scene's file
   long history = 0;                ///< moves and exposures that the simulator remembers: noise starts after them
 };

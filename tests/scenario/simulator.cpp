@@ -77,11 +77,11 @@ std::string exchange(const std::string& path, const std::string& line) {
 }  // namespace
 
 Simulator::Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed,
-                     const std::string& stage_wire, long history)
+                     const std::string& stage_wire, long history, const std::string& stage)
     : state_(with_history(made(folder + "/bench"), history)),
       log_(folder + "/goniosim.log"),
       process_({kGoniosim, scene_file, "--state", state_, "--seed", std::to_string(seed), "--camera-address",
-                own_camera_address(), "--stage-wire", stage_wire},
+                own_camera_address(), "--stage-wire", stage_wire, "--stage", stage},
                log_) {
   const auto is_ready_or_gone = [&] { return std::filesystem::exists(state_ + "/ready") || !process_.is_running(); };
   if (eventually(is_ready_or_gone, kStartDeadline) && process_.is_running()) return;

@@ -51,7 +51,7 @@ class Simulator {
   /// Everything it writes lies below `folder`. It has a camera address of its own. `history`: moves and exposures of
   /// earlier runs, after which the noise goes on.
   Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed,
-            const std::string& stage_wire = "tcp", long history = 0);
+            const std::string& stage_wire = "tcp", long history = 0, const std::string& stage = "goniod");
 
   [[nodiscard]] const std::string& state_folder() const { return state_; }
   [[nodiscard]] std::string instrument_file() const { return state_ + "/instrument.toml"; }
