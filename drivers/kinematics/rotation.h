@@ -43,10 +43,10 @@ struct Vector3 {
 }
 
 /// A right-handed orthonormal frame; its vectors are the columns of a rotation.
-using Frame = std::array<Vector3, 3>;
+using Triad = std::array<Vector3, 3>;
 
 /// `frame` turned about its own first vector.
-[[nodiscard]] inline Frame turned_about_first(const Frame& frame, Angle by) {
+[[nodiscard]] inline Triad turned_about_first(const Triad& frame, Angle by) {
   const double c = std::cos(by.si());
   const double s = std::sin(by.si());
   return {frame[0], combined(c, frame[1], s, frame[2]), combined(c, frame[2], -s, frame[1])};

@@ -17,7 +17,7 @@ constexpr Angle kHalfTurn = radians(std::numbers::pi);
 constexpr double kFree_rad = 1e-13;
 
 // Frames whose first vector is a direction and whose others are the tangents along growing theta and phi.
-Frame body_frame(Angle theta, Angle phi) {
+Triad body_frame(Angle theta, Angle phi) {
   const double st = std::sin(theta.si());
   const double ct = std::cos(theta.si());
   const double sp = std::sin(phi.si());
@@ -25,7 +25,7 @@ Frame body_frame(Angle theta, Angle phi) {
   return {Vector3{ct, st * cp, st * sp}, Vector3{-st, ct * cp, ct * sp}, Vector3{0.0, -sp, cp}};
 }
 
-Frame source_frame(const TurningSample& sample) {
+Triad source_frame(const TurningSample& sample) {
   const double ca = std::cos(sample.source_azimuth.si());
   const double sa = std::sin(sample.source_azimuth.si());
   const double ce = std::cos(sample.source_elevation.si());
@@ -38,7 +38,7 @@ Vector3 detector_direction(const TurningSample& sample, Angle arm) {
 }
 
 // Where a direction lies about the first vector of a frame, from the second towards the third.
-Angle bearing(const Frame& frame, const Vector3& v) {
+Angle bearing(const Triad& frame, const Vector3& v) {
   return radians(std::atan2(dot(v, frame[2]), dot(v, frame[1])));
 }
 
@@ -61,7 +61,7 @@ Vector3 to_body(const SampleTurns& turns, const Vector3& lab) {
 }
 
 // The rotation that carries one frame into another, as the images of the body's X, Y and Z.
-Frame carrying(const Frame& body, const Frame& lab) {
+Triad carrying(const Triad& body, const Triad& lab) {
   const auto image = [&](double a, double b, double c) {
     return combined(1.0, combined(a, lab[0], b, lab[1]), c, lab[2]);
   };
@@ -71,7 +71,7 @@ Frame carrying(const Frame& body, const Frame& lab) {
 
 // How far `lab` must be turned about its first vector for the rotation from `body` to be nearest to how the sample
 // stands: the trace of the product with the standing rotation is largest there.
-Angle nearest_turn(const Frame& body, const Frame& lab, const SampleTurns& standing) {
+Angle nearest_turn(const Triad& body, const Triad& lab, const SampleTurns& standing) {
   const Vector3 second = to_lab(standing, body[1]);
   const Vector3 third = to_lab(standing, body[2]);
   return radians(std::atan2(dot(second, lab[2]) - dot(third, lab[1]), dot(second, lab[1]) + dot(third, lab[2])));
@@ -79,7 +79,7 @@ Angle nearest_turn(const Frame& body, const Frame& lab, const SampleTurns& stand
 
 // Pitch and roll for a given yaw: R' = Rz(-yaw) R = Ry(pitch) Rx(roll), read where its entries are largest. Holds all
 // digits also with the normal along the yaw axis, where any yaw will do.
-SampleTurns taken_apart(const Frame& rotation, Angle yaw, Angle detector) {
+SampleTurns taken_apart(const Triad& rotation, Angle yaw, Angle detector) {
   const Vector3 normal = turned_about_z(rotation[0], -yaw);
   const Vector3 y = turned_about_z(rotation[1], -yaw);
   const Vector3 z = turned_about_z(rotation[2], -yaw);
@@ -146,17 +146,17 @@ Result<std::vector<SampleTurns>> turns_for(const TurningSample& sample, const Ge
   const Result<Angle> away = arm_from_source(xi, source.elevation);
   if (!away) return failure(away.error());
   const bool is_free = std::sin(xi.si()) < kFree_rad;
-  const Frame on_sample = body_frame(g.theta_i, g.phi_i);
-  const Frame in_lab = source_frame(sample);
+  const Triad on_sample = body_frame(g.theta_i, g.phi_i);
+  const Triad in_lab = source_frame(sample);
   std::vector<SampleTurns> all;
   for (const double side : {1.0, -1.0}) {
     if (side < 0.0 && away->si() < kFree_rad) continue;  // both places of the arm are one
     const Angle arm = source.azimuth + side * *away;
     // Both frames are turned so that their second vectors point to the detector; then one is carried into the other.
-    const Frame body = is_free ? on_sample : turned_about_first(on_sample, bearing_on_sample(g));
-    const Frame lab = turned_about_first(
+    const Triad body = is_free ? on_sample : turned_about_first(on_sample, bearing_on_sample(g));
+    const Triad lab = turned_about_first(
         in_lab, is_free ? nearest_turn(body, in_lab, standing) : bearing(in_lab, detector_direction(sample, arm)));
-    const Frame rotation = carrying(body, lab);
+    const Triad rotation = carrying(body, lab);
     const bool along_yaw_axis = std::hypot(rotation[0].x, rotation[0].y) < kFree_rad;
     const Angle yaw = along_yaw_axis ? standing.yaw : radians(std::atan2(rotation[0].y, rotation[0].x));
     all.push_back(taken_apart(rotation, yaw, arm));

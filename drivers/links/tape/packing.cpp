@@ -9,7 +9,7 @@ namespace {
 
 std::uint16_t folded(std::uint16_t difference) {
   const bool is_negative = (difference & 0x8000U) != 0;
-  return static_cast<std::uint16_t>((difference << 1U) ^ (is_negative ? 0xFFFFU : 0U));
+  return static_cast<std::uint16_t>((static_cast<unsigned>(difference) << 1U) ^ (is_negative ? 0xFFFFU : 0U));
 }
 
 std::uint16_t unfolded(std::uint16_t value) {

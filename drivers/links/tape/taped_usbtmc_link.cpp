@@ -7,13 +7,13 @@
 namespace gonio::drivers {
 namespace {
 
-Result<void> put(const TapeChannel& channel, TapeExchange exchange, Result<void> outcome) {
+Result<void> put_usb(const TapeChannel& channel, TapeExchange exchange, Result<void> outcome) {
   if (!outcome) exchange.error = outcome.error();
   channel.put(std::move(exchange));
   return outcome;
 }
 
-Result<std::vector<std::uint8_t>> put(const TapeChannel& channel, TapeExchange exchange,
+Result<std::vector<std::uint8_t>> put_usb(const TapeChannel& channel, TapeExchange exchange,
                                       Result<std::vector<std::uint8_t>> outcome) {
   if (outcome) {
     exchange.reply = *outcome;
@@ -63,27 +63,27 @@ UsbtmcInterface TapedUsbtmcLink::interface() const {
 // Timeouts are no part of a request: nothing of them goes over the wire.
 Result<void> TapedUsbtmcLink::bulk_out(std::span<const std::uint8_t> bytes, Duration timeout) {
   TapeExchange exchange = channel_.ask(TapeCall::UsbBulkOut, {bytes.begin(), bytes.end()});
-  return put(channel_, std::move(exchange), link_.bulk_out(bytes, timeout));
+  return put_usb(channel_, std::move(exchange), link_.bulk_out(bytes, timeout));
 }
 
 Result<std::vector<std::uint8_t>> TapedUsbtmcLink::bulk_in(std::size_t most, Duration timeout) {
   TapeExchange exchange = channel_.ask(TapeCall::UsbBulkIn, request_for(most));
-  return put(channel_, std::move(exchange), link_.bulk_in(most, timeout));
+  return put_usb(channel_, std::move(exchange), link_.bulk_in(most, timeout));
 }
 
 Result<std::vector<std::uint8_t>> TapedUsbtmcLink::interrupt_in(Duration timeout) {
   TapeExchange exchange = channel_.ask(TapeCall::UsbInterruptIn);
-  return put(channel_, std::move(exchange), link_.interrupt_in(timeout));
+  return put_usb(channel_, std::move(exchange), link_.interrupt_in(timeout));
 }
 
 Result<std::vector<std::uint8_t>> TapedUsbtmcLink::control_in(const usbtmc::ControlRequest& request, Duration timeout) {
   TapeExchange exchange = channel_.ask(TapeCall::UsbControlIn, bytes_of(request));
-  return put(channel_, std::move(exchange), link_.control_in(request, timeout));
+  return put_usb(channel_, std::move(exchange), link_.control_in(request, timeout));
 }
 
 Result<void> TapedUsbtmcLink::clear_halt(std::uint8_t endpoint) {
   TapeExchange exchange = channel_.ask(TapeCall::UsbClearHalt, {endpoint});
-  return put(channel_, std::move(exchange), link_.clear_halt(endpoint));
+  return put_usb(channel_, std::move(exchange), link_.clear_halt(endpoint));
 }
 
 }  // namespace gonio::drivers
