@@ -27,8 +27,8 @@ std::string plan_text(const PlanOptions& options) {
        << "\nphi_r_deg = " << options.phi_r_deg << "\nwavelength_nm = [568]\n"
        << "[reading]\ntarget_snr = " << options.target_snr << "\nmax_time_s = 0.5\n"
        << (options.exposure_s.empty() ? "" : "exposure_s = " + options.exposure_s + "\n")
-       << "[reference]\nstandard = \"SRT-99-020\"\nmode = \"same-geometry\"\nblock_s = 20\n"
-       << "[visits]\ndark_s = 10\n[order]\nstrategy = \"" << options.strategy << "\"\n"
+       << "[reference]\nstandard = \"SRT-99-020\"\nmode = \"same-geometry\"\nblock_s = " << options.block_s << "\n"
+       << "[visits]\ndark_s = " << options.dark_s << "\n[order]\nstrategy = \"" << options.strategy << "\"\n"
        << "[on_error]\nitem = \"" << options.on_item_error << "\"\n[on_restart]\npolicy = \"resume\"\n";
   return text.str();
 }

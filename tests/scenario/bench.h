@@ -36,6 +36,8 @@ struct PlanOptions {
   std::string phi_r_deg = "[0, 90, 180]";
   std::string strategy = "fastest";
   double target_snr = 100.0;
+  int block_s = 20;  ///< and dark_s: what is due by time depends on how busy the machine is
+  int dark_s = 10;
   std::string exposure_s{};  ///< stated: "[0.001, 0.016]"; empty: chosen
   std::string on_item_error = "retry 2, then skip";
 };
