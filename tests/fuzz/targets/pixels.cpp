@@ -20,13 +20,14 @@ unsigned pixel_at(const PixelFormat& format, Bytes bytes, std::size_t k) {
     unsigned value = 0;
     for (std::size_t bit = 0; bit < bits; ++bit) {
       const std::size_t at = k * bits + bit;
-      value |= (bytes[at / 8] >> at % 8 & 1U) << bit;
+      value |= (static_cast<unsigned>(bytes[at / 8]) >> at % 8 & 1U) << bit;
     }
     return value;
   }
   if (format.packing == PixelPacking::GigePacked) {
     const std::size_t group = k / 2 * 3;
-    const unsigned lower = bytes[group + 1] >> (k % 2 == 0 ? 0U : 4U) & ((1U << (bits - 8)) - 1U);
+    const unsigned middle = bytes[group + 1];
+    const unsigned lower = middle >> (k % 2 == 0 ? 0U : 4U) & ((1U << (bits - 8)) - 1U);
     return static_cast<unsigned>(bytes[group + (k % 2 == 0 ? 0 : 2)]) << (bits - 8) | lower;
   }
   if (bits <= 8) return bytes[k] & mask;
