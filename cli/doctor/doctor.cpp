@@ -18,6 +18,7 @@ using api::RouteId;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::string_view kDetectorArm = "theta_r";
+constexpr double kFirstLook_s = 5.0;
 
 double seconds_since(SteadyClock::time_point start) {
   return std::chrono::duration<double>(SteadyClock::now() - start).count();
@@ -58,21 +59,33 @@ Result<bool> Doctor::run() {
   return !has_failed_;
 }
 
+// A daemon that has just been started has not seen its stage yet: bounded.
+Result<api::StatusReport> Doctor::status_with_stage() {
+  const auto started = SteadyClock::now();
+  while (true) {
+    auto status = client_.get<api::StatusReport>(RouteId::Status);
+    if (!status) return failure(status.error());
+    const bool says_something = status->value.stage || status->value.stage_error;
+    if (says_something || seconds_since(started) > kFirstLook_s) return std::move(status->value);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 Result<void> Doctor::look() {
-  const auto status = client_.get<api::StatusReport>(RouteId::Status);
+  const Result<api::StatusReport> status = status_with_stage();
   if (!status) return failure(status.error());
   const auto instrument = client_.get<api::InstrumentReport>(RouteId::Instrument);
   if (!instrument) return failure(instrument.error());
   const auto references = client_.get<api::ReferenceList>(RouteId::References);
   if (!references) return failure(references.error());
   instrument_ = instrument->value;
-  note_all(check_daemon(status->value, options_.own_version));
+  note_all(check_daemon(*status, options_.own_version));
   note_all(check_instrument(instrument_));
   note_all(check_references(references->value, options_.today));
-  if (status->value.stage) {
-    const std::vector<Finding> stage = check_stage(*status->value.stage, instrument_);
+  if (status->stage) {
+    const std::vector<Finding> stage = check_stage(*status->stage, instrument_);
     note_all(stage);
-    may_move_ = stage.front().verdict != Verdict::Failed && !status->value.stage_error;
+    may_move_ = stage.front().verdict != Verdict::Failed && !status->stage_error;
   } else {
     skip("stage", "it has not answered");
   }

@@ -35,6 +35,7 @@ class Doctor {
   void note_all(const std::vector<Finding>& findings);
   void skip(const std::string& check, const std::string& why);
   [[nodiscard]] Result<void> look();
+  [[nodiscard]] Result<api::StatusReport> status_with_stage();
   void try_motion();
   void try_axis(const api::AxisLimits& axis);
   bool try_way(const api::AxisLimits& axis, double to);

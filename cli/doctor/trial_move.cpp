@@ -29,7 +29,7 @@ Finding check_stop(const std::string& axis, double end, double stands, double to
   if (!ended_by) {
     finding.verdict = Verdict::Failed;
     finding.remedy = "the move was over before STOP came, or counted as done: try again, and watch the arm";
-  } else if (ended_by->code != ErrorCode::Stopped) {
+  } else if (ended_by->code != ErrorCode::Stopped && ended_by->code != ErrorCode::StaleEpoch) {
     finding.verdict = Verdict::Failed;
     finding.seen = "the move ended otherwise: " + describe(*ended_by);
     finding.remedy = "mend that first";

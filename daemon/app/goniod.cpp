@@ -1,11 +1,11 @@
 // goniod: options, then one thing after the other that can be refused, then the threads, then waiting for the end.
 #include <csignal>
 
-#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <mutex>
 #include <optional>
 
 #include <fmt/format.h>
@@ -27,16 +27,34 @@
 namespace gonio::daemon {
 namespace {
 
-/// Events go out once there is a server; those committed before are fetched from the store by whoever asks.
+/// Events go out while there is a server; those committed before and after are fetched from the store by whoever asks.
 class Publisher {
  public:
-  void attach(Server& server) { server_ = &server; }
-  void operator()(const EventRecord& event) const {
-    if (Server* server = server_) server->publish(event_report(event));
+  /// From here on until it is destroyed, which comes before the server's end.
+  class Attached {
+   public:
+    Attached(Publisher& publisher, Server& server) : publisher_(publisher) { publisher_.set(&server); }
+    ~Attached() { publisher_.set(nullptr); }
+    Attached(const Attached&) = delete;
+    Attached& operator=(const Attached&) = delete;
+
+   private:
+    Publisher& publisher_;
+  };
+
+  void operator()(const EventRecord& event) {
+    const std::lock_guard lock(mutex_);
+    if (server_ != nullptr) server_->publish(event_report(event));
   }
 
  private:
-  std::atomic<Server*> server_{nullptr};
+  void set(Server* server) {
+    const std::lock_guard lock(mutex_);
+    server_ = server;
+  }
+
+  std::mutex mutex_;
+  Server* server_ = nullptr;
 };
 
 std::string boot_id() {
@@ -127,7 +145,7 @@ Result<void> serve(const Options& options, const sigset_t& signals) {
   Result<std::unique_ptr<Server>> server =
       Server::start(std::move(*listeners), {.last_event = status->last_event}, service, clock);
   if (!server) return failure(server.error());
-  publisher.attach(**server);
+  const Publisher::Attached attached(publisher, **server);  // the store's thread may commit until the engine's end
   const std::string url = fmt::format("http://{}:{}", options.address, (*server)->port());
   log_info(fmt::format("instrument \"{}\" ({:.12}), store {}, REST API at {}", instrument->name, instrument->sha256,
                        options.store_file, url));

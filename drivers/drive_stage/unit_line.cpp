@@ -12,6 +12,11 @@ bool says_nothing(ErrorCode code) {
   return code == ErrorCode::TimedOut || code == ErrorCode::Unreachable;
 }
 
+// The links' word for a call that gave way to a halt, which takes one exchange a drive.
+bool gave_way(const Error& error) {
+  return error.code == ErrorCode::Unreachable && error.seen == "interrupted";
+}
+
 // What of a value fits the register, as it will be read back.
 std::int64_t cut(const stage::Register& reg, std::int64_t value) {
   const unsigned bits = 16U * reg.words;
@@ -40,12 +45,17 @@ bool UnitLine::is_given_up() const {
 template <class Exchange>
 Result<void> UnitLine::talk(const std::string& what, Exchange exchange) {
   Result<void> done;
+  int given_way = 0;
   for (int tries = 0; tries < tries_; ++tries) {
     const Instant began = clock_.now();
     done = exchange();
     if (done || done.error().code == ErrorCode::DeviceRefused) {
       silent_since_.reset();
       break;
+    }
+    if (tries_ > 1 && gave_way(done.error()) && ++given_way <= kMostGivenWay) {
+      --tries;  // no failing of the unit
+      continue;
     }
     link_.resync();
     if (says_nothing(done.error().code) && !silent_since_) silent_since_ = began;

@@ -19,6 +19,8 @@ namespace gonio::drivers {
 class UnitLine {
  public:
   static constexpr int kTries = 3;
+  /// How often one call, unless it has one try only, begins anew after giving way to a halt on the same wire.
+  static constexpr int kMostGivenWay = 32;
 
   /// `link` and `clock` must outlive it; `name` ("theta_r") stands in errors.
   UnitLine(ModbusLink& link, const Clock& clock, std::string name, Duration patience, int tries = kTries);

@@ -36,7 +36,7 @@ std::string plan_text(const PlanOptions& options) {
 Bench::Bench(const SceneOptions& scene) : scene_file_(folder_ / "scene.toml") {
   write_text(scene_file_, scene_text(scene));
   simulator_ = std::make_unique<Simulator>(folder_.path(), scene_file_, scene.seed, scene.stage_wire, scene.history,
-                                             scene.stage);
+                                           scene.stage);
   files_ = {simulator_->instrument_file(), simulator_->reference_folder(), folder_ / "store.sqlite"};
 }
 

@@ -49,7 +49,7 @@ TEST_F(Tape, ReplaysARecordedScanToTheSameStoreAlways) {
   record("night.tape");
   measure();
   wait_for_brdf();
-  ASSERT_EQ(bench_.end_daemon(), 0);
+  ASSERT_EQ(bench_.end_daemon(), 0) << text_of(bench_.folder() + "/goniod.log");
 
   const Finished once = replay("night.tape", against_the_store());
   const Finished twice = replay("night.tape", {"--against", bench_.folder() + "/replayed.sqlite"}, "again.sqlite");
@@ -66,7 +66,7 @@ TEST_F(Tape, ReplaysARecordedScanToTheSameStoreAlways) {
 TEST_F(Tape, CatchesADriverThatSendsAnotherRequest) {
   record("night.tape");
   measure();
-  ASSERT_EQ(bench_.end_daemon(), 0);
+  ASSERT_EQ(bench_.end_daemon(), 0) << text_of(bench_.folder() + "/goniod.log");
   // Twice the degrees a count: every target is half as many counts.
   std::string changed = text_of(bench_.files().instrument);
   const std::size_t axis = changed.find("[stage.registers.axes.theta_i]");
@@ -93,7 +93,7 @@ TEST_F(Tape, ReplaysAStopAndWhatFollowsIt) {
   bench_.reset_and_resume(scan);
   ASSERT_EQ(bench_.wait_for_state(scan, {"done", "failed"}), "done") << bench_.log();
   wait_for_brdf();
-  ASSERT_EQ(bench_.end_daemon(), 0);
+  ASSERT_EQ(bench_.end_daemon(), 0) << text_of(bench_.folder() + "/goniod.log");
 
   const Finished replayed = replay("night.tape", against_the_store());
 
@@ -111,7 +111,7 @@ TEST_F(Tape, ReplaysFaultsThatWereMetAndRetried) {
   if (bench_.wait_for_state(scan, {"holding", "done", "failed"}) == "holding") bench_.reset_and_resume(scan);
   ASSERT_EQ(bench_.wait_for_state(scan, {"done", "failed"}), "done") << bench_.log();
   wait_for_brdf();
-  ASSERT_EQ(bench_.end_daemon(), 0);
+  ASSERT_EQ(bench_.end_daemon(), 0) << text_of(bench_.folder() + "/goniod.log");
 
   const Finished replayed = replay("night.tape", against_the_store());
 
@@ -131,7 +131,7 @@ TEST_F(Tape, ReplaysAKilledDaemonAndTheOneAfterItOnOneStore) {
   record("second.tape");
   ASSERT_EQ(bench_.wait_for_state(scan, {"done", "failed"}), "done") << bench_.log();
   wait_for_brdf();
-  ASSERT_EQ(bench_.end_daemon(), 0);
+  ASSERT_EQ(bench_.end_daemon(), 0) << text_of(bench_.folder() + "/goniod.log");
 
   const Finished first = replay("first.tape");
   const Finished wrong = replay("second.tape", {}, "empty.sqlite");

@@ -85,6 +85,7 @@ Error TapePlayer::differs(TapeParty party, std::int64_t number, Instant at, cons
 
 Result<std::optional<TapePlayer::Step>> TapePlayer::next() {
   if (difference_) return failure(*difference_);
+  if (has_run_out_) return std::optional<Step>();
   while (steps_.empty()) {
     const Result<bool> read = read_one();
     if (!read) return failure(read.error());
@@ -145,7 +146,12 @@ Result<TapeExchange> TapePlayer::answer(TapeParty party, std::uint8_t link, Tape
     drop_front(of);
   }
   if (difference_) return failure(*difference_);
-  return failure(differs(party, reader_.number() + 1, of.now, asked, "the tape has ended: " + reader_.tail()));
+  Error ended = differs(party, reader_.number() + 1, of.now, asked, "the tape has ended: " + reader_.tail());
+  if (reader_.is_cut_off()) {  // the program was killed in the midst of this: there is nothing to differ from
+    difference_.reset();
+    has_run_out_ = true;
+  }
+  return failure(std::move(ended));
 }
 
 std::vector<std::uint8_t> TapePlayer::query(TapeParty party, std::uint8_t link, TapeCall call) {

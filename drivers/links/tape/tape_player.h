@@ -40,7 +40,8 @@ class TapePlayer {
   /// the party's last turn left something unasked that was asked then; IncompleteData (a damaged tape).
   [[nodiscard]] Result<std::optional<Step>> next();
 
-  /// The exchange that was recorded for this request. Errors: ReplayDiffers.
+  /// The exchange that was recorded for this request. Errors: ReplayDiffers; where a tape was cut off and the party has
+  /// no more records, that is kept as no difference, and `next` says that the tape has ended.
   [[nodiscard]] Result<TapeExchange> answer(TapeParty party, std::uint8_t link, TapeCall call,
                                             std::span<const std::uint8_t> request);
   /// What a query was answered then, or last.
@@ -83,6 +84,7 @@ class TapePlayer {
   std::deque<Step> steps_;
   std::size_t ahead_ = 0;  ///< entries in all tracks
   bool is_at_end_ = false;
+  bool has_run_out_ = false;  ///< of a tape that was cut off: something was asked that came after it
   std::optional<Error> difference_;
   std::int64_t exchanges_ = 0;
   Instant latest_{};

@@ -92,13 +92,18 @@ Result<std::optional<TapeRecord>> TapeReader::next() {
   return record;
 }
 
+std::optional<TapeRecord> TapeReader::cut_off(std::string how) {
+  tail_ = std::move(how);
+  is_cut_off_ = true;
+  return std::nullopt;
+}
+
 Result<std::optional<TapeRecord>> TapeReader::read_record() {
   if (!tail_.empty()) return std::nullopt;
   place_ = read_;
   std::vector<std::uint8_t> head;
   if (fill(head, kTapeRecordHead) == 0) {
-    tail_ = "cut off between two records";
-    return std::nullopt;
+    return cut_off("cut off between two records");
   }
   ByteReader words(head);
   const std::size_t length = words.u32();
@@ -108,14 +113,12 @@ Result<std::optional<TapeRecord>> TapeReader::read_record() {
   }
   std::vector<std::uint8_t> payload;
   if (!words.is_whole() || fill(payload, length) < length) {
-    tail_ = fmt::format("cut off within a record: {} bytes dropped", read_ - place_);
-    return std::nullopt;
+    return cut_off(fmt::format("cut off within a record: {} bytes dropped", read_ - place_));
   }
   if (crc32_of(payload) != crc) {
     // A file system that lost power may have the length of the last record and not its bytes.
     if (in_->peek() != std::istream::traits_type::eof()) return damaged("its checksum does not fit");
-    tail_ = fmt::format("cut off within a record: {} bytes dropped", read_ - place_);
-    return std::nullopt;
+    return cut_off(fmt::format("cut off within a record: {} bytes dropped", read_ - place_));
   }
   Result<TapeRecord> record = decode_record(payload);
   if (!record) return damaged(record.error().seen);

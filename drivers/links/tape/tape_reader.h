@@ -35,11 +35,14 @@ class TapeReader {
   [[nodiscard]] std::int64_t number() const { return number_; }
   /// How the tape ended, once `next` has said that it did: "ended", "cut off within a record: 17 bytes dropped".
   [[nodiscard]] const std::string& tail() const { return tail_; }
+  /// By then: that its last record is not an end, as a killed program leaves it.
+  [[nodiscard]] bool is_cut_off() const { return is_cut_off_; }
 
  private:
   TapeReader(std::unique_ptr<std::istream> in, std::string name);
   [[nodiscard]] Result<std::optional<TapeRecord>> read_record();
   [[nodiscard]] std::size_t fill(std::vector<std::uint8_t>& bytes, std::size_t wanted);
+  [[nodiscard]] std::optional<TapeRecord> cut_off(std::string how);
   [[nodiscard]] tl::unexpected<Error> damaged(const std::string& seen) const;
 
   std::unique_ptr<std::istream> in_;
@@ -49,6 +52,7 @@ class TapeReader {
   std::int64_t place_ = 0;  ///< of the record under way, in bytes
   std::int64_t read_ = 0;
   std::string tail_;
+  bool is_cut_off_ = false;
 };
 
 }  // namespace gonio::drivers

@@ -14,7 +14,7 @@ Result<void> put_usb(const TapeChannel& channel, TapeExchange exchange, Result<v
 }
 
 Result<std::vector<std::uint8_t>> put_usb(const TapeChannel& channel, TapeExchange exchange,
-                                      Result<std::vector<std::uint8_t>> outcome) {
+                                          Result<std::vector<std::uint8_t>> outcome) {
   if (outcome) {
     exchange.reply = *outcome;
   } else {
