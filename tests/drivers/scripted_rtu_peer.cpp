@@ -83,11 +83,12 @@ void ScriptedRtuPeer::serve() {
       const auto end = received.begin() + static_cast<std::ptrdiff_t>(length);
       const Bytes request(received.begin(), end);
       received.erase(received.begin(), end);
-      say(script_(request, requests().size()));
+      const Bytes reply = script_(request, requests().size());
       {
         const std::lock_guard lock(mutex_);
-        requests_.push_back(request);
+        requests_.push_back(request);  // first: whoever has the reply may ask for the request
       }
+      say(reply);
       came_.notify_all();
     }
   }
