@@ -176,7 +176,7 @@ class SpoiltReply : public testing::TestWithParam<Spoilt> {};
 
 TEST_P(SpoiltReply, IsRefusedAndTheNextIsRight) {
   ScriptedRtuPeer peer(first_then(GetParam().frame, kSeven));
-  RtuBus bus(config(peer.device(), 200ms));
+  RtuBus bus(config(peer.device(), 1s));
   std::array<std::uint16_t, 1> word{};
 
   const auto wrong = bus.normal().read_registers(0, word);
