@@ -17,9 +17,6 @@ namespace {
 using calibration::Target;
 using stage::Axis;
 
-constexpr int kFewestDarkFrames = 4;
-constexpr int kMostDarkFrames = 16;
-
 // How long the slowest of the axes that this move moves will settle.
 Duration settle_time(const drivers::StageConfig& stage, const drivers::MotionTarget& target,
                      const std::optional<drivers::StageState>& from) {
@@ -85,18 +82,6 @@ void Sequencer::Impl::start_item(const ItemKey& item, Instant now) {
   scan->job->target = *target;
   const auto filter = static_cast<int>(std::lround((*target)[stage::index_of(Axis::FilterWheel)].value_or(0.0)));
   scan->job->measurement = Measurement::of_item(scan->chooser, item.target, filter);
-}
-
-// The first dark of a run reads the whole ladder: the levels are needed to choose exposures, and whichever rung is used
-// later then has a dark on both sides. Later ones read the rungs in use and those between.
-void Sequencer::Impl::start_dark(Instant now) {
-  const bool is_first = !scan->last_dark && scan->state == ScanState::Running;
-  const std::size_t top = scan->chooser.rungs().size() - 1;
-  const std::size_t lowest = is_first ? 0 : scan->lowest_rung.value_or(0);
-  const std::size_t highest = is_first ? top : scan->highest_rung.value_or(top);
-  const int frames = std::clamp(scan->most_frames, kFewestDarkFrames, kMostDarkFrames);
-  scan->job = Job{.kind = Job::Kind::Dark, .started = now};
-  scan->job->measurement = Measurement::of_dark(lowest, highest, frames);
 }
 
 void Sequencer::Impl::start_park(Instant now) {
@@ -327,17 +312,6 @@ void Sequencer::Impl::accept_item(Job& job, Instant now) {
           .holds_exposures = true});
 }
 
-void Sequencer::Impl::accept_dark(Job& job, Instant now) {
-  const NewVisit visit{
-      .scan = scan->id, .time = job.time, .readings = job.measurement->readings(), .started = job.started};
-  scan->dark_time.add(job.time.total());
-  scan->last_dark = now;
-  scan->dark_owed = false;
-  scan->dark_failures = 0;
-  commit({.at = now, .writes = {visit}, .events = {event_dark_visit(visit)}},
-         {.done = [](const CommitReceipt&, Instant) {}, .holds_exposures = true});
-}
-
 // ---- not done ----
 
 void Sequencer::Impl::drop_job(Instant now) {
@@ -362,13 +336,6 @@ void Sequencer::Impl::job_failed(const Error& error, Instant now) {
   drop_job(now);
   scan->job.reset();
   add_hold(hold_for(error.code), error.device.empty() ? kDaemon : error.device, describe(error), now);
-}
-
-// A scan without its dark is worth nothing: never skipped.
-void Sequencer::Impl::dark_failed(const Error& error, Instant now) {
-  scan->job.reset();
-  if (++scan->dark_failures <= scan->policy.item_retries) return;  // chosen again
-  add_hold(hold_for(error.code), error.device, "dark visit: " + describe(error), now);
 }
 
 void Sequencer::Impl::item_failed(const Error& error, Instant now) {

@@ -248,15 +248,4 @@ void Sequencer::Impl::advance_measuring(Instant now) {
   if (scan->job && !is_in_transition) drive_job(now);
 }
 
-void Sequencer::Impl::choose_job(Instant now) {
-  if (scan->state == ScanState::Finishing) return scan->dark_owed ? start_dark(now) : start_park(now);
-  if (scan->finish_asked) return transition(ScanEvent::Finish, now, kDaemon, "asked to finish before the interruption");
-  const auto next = scan->items.next(now);
-  if (!next) return transition(ScanEvent::Complete, now, kDaemon, "every item is decided");
-  const Duration every = scan->policy.dark_every;
-  const bool dark_is_due = !scan->last_dark || (every > Duration::zero() && now - *scan->last_dark >= every);
-  if (dark_is_due) return start_dark(now);
-  start_item(*next, now);
-}
-
 }  // namespace gonio::daemon

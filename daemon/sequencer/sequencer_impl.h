@@ -10,14 +10,16 @@
 #include "daemon/sequencer/active_scan.h"
 #include "daemon/sequencer/scan_machine.h"
 #include "daemon/sequencer/sequencer.h"
+#include "daemon/sequencer/visit_schedule.h"
 
 namespace gonio::daemon {
 
 /// Who, of what nobody asked for.
 inline constexpr const char* kDaemon = "goniod";
 
-/// The inside of the sequencer, in four sources: sequencer.cpp (channels and answers), scan_life.cpp (states and what
-/// comes next), scan_jobs.cpp (moves, exposures, results), scan_commands.cpp (what clients ask).
+/// The inside of the sequencer, in five sources: sequencer.cpp (channels and answers), scan_life.cpp (states),
+/// scan_jobs.cpp (moves, exposures, results), scan_visits.cpp (visits, and which job is next), scan_commands.cpp (what
+/// clients ask).
 struct Sequencer::Impl {
   explicit Impl(SequencerConfig configuration) : config(std::move(configuration)), epoch(config.epoch) {}
 
@@ -90,7 +92,6 @@ struct Sequencer::Impl {
   void advance_found(Instant now);
   void advance_preparing(Instant now);
   void advance_measuring(Instant now);
-  void choose_job(Instant now);
   void transition(ScanEvent event, Instant now, const std::string& who, const std::string& reason,
                   std::optional<CommandId> command = std::nullopt, std::vector<StoreWrite> more = {},
                   std::vector<NewEvent> more_events = {});
@@ -106,7 +107,6 @@ struct Sequencer::Impl {
 
   // ---- jobs (scan_jobs.cpp) ----
   void start_item(const ItemKey& item, Instant now);
-  void start_dark(Instant now);
   void start_park(Instant now);
   void drive_job(Instant now);
   void begin_exposure(Instant now);
@@ -122,15 +122,20 @@ struct Sequencer::Impl {
   [[nodiscard]] bool lamp_is_out(const drivers::GateRecord& gate, Instant now);
   void accept_job(Instant now);
   void accept_item(Job& job, Instant now);
-  void accept_dark(Job& job, Instant now);
   void job_failed(const Error& error, Instant now);
-  void dark_failed(const Error& error, Instant now);
   void item_failed(const Error& error, Instant now);
   void give_up_item(const ItemKey& item, const Error& error, StoreTransaction transaction, Instant now);
   /// Gives up what is in hand without a decision; exposures made are recorded. Open calls are awaited and dropped.
   void drop_job(Instant now);
   [[nodiscard]] NewAttempt attempt_of(const Job& job, AttemptOutcome outcome, Instant now) const;
   static void finish_times(Job& job, Instant now);
+
+  // ---- visits, and which job is next (scan_visits.cpp) ----
+  void choose_job(Instant now);
+  [[nodiscard]] VisitClocks visit_clocks() const;
+  void start_dark(Instant now);
+  void accept_dark(Job& job, Instant now);
+  void dark_failed(const Error& error, Instant now);
 
   // ---- commands (scan_commands.cpp) ----
   void run(const Command& command, Instant now);
