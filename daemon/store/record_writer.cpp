@@ -84,6 +84,7 @@ void RecordWriter::operator()(const NewScan& scan) {
   insert.bind(scan.who).bind(time_.run).bind(time_.utc_ns).bind(time_.boottime_ns).bind(time_.utc_ns).run();
   new_scan_ = database_.last_id();
   write_points(scan.planned.points);
+  write_turn(new_scan_, scan.turn);
 }
 
 void RecordWriter::write_points(const std::vector<ScanPoint>& points) {
@@ -127,14 +128,6 @@ void RecordWriter::operator()(const AddHold& add) {
       .bind(time_.run)
       .bind(time_.boottime_ns)
       .bind(time_.utc_ns)
-      .run();
-}
-
-void RecordWriter::operator()(const ClearHolds& clear) {
-  database_.statement("UPDATE hold SET cleared_utc_ns = ?, cleared_by = ? WHERE scan_id = ? AND cleared_utc_ns IS NULL")
-      .bind(time_.utc_ns)
-      .bind(clear.who)
-      .bind(clear.scan)
       .run();
 }
 

@@ -30,6 +30,7 @@ class RecordWriter {
   void operator()(const NewVisit& visit);
   void operator()(const NewBrdf& brdf);
   void operator()(const AuditEntry& entry);
+  void operator()(const ScanChange& change);
   /// An event's own number is the caller's: gapless.
   [[nodiscard]] EventRecord write_event(const NewEvent& event, std::int64_t number);
 
@@ -42,6 +43,8 @@ class RecordWriter {
   std::int64_t id_of_reference(const NewScan& scan);
   std::int64_t id_of_instrument(const NewScan& scan);
   void write_points(const std::vector<ScanPoint>& points);
+  void write_turn(ScanId scan, const ScanTurn& turn);
+  void write_order(ScanId scan, const std::vector<std::int32_t>& order);
   void bind_time_parts(Statement& statement, const TimeParts& time);
   void write_power(std::int64_t reading, const char* role, const PowerRecord& power);
   void write_reading(const ReadingRecord& reading, std::int64_t attempt, std::int64_t visit, std::int64_t sequence);

@@ -10,7 +10,8 @@ using calibration::Target;
 
 constexpr std::array<std::string_view, 10> kStateNames{"queued", "preparing",      "running", "holding", "finishing",
                                                        "done",   "finished-early", "aborted", "failed",  "interrupted"};
-constexpr std::array<std::string_view, 6> kHoldNames{"operator", "lamp", "door", "device", "disk", "restart"};
+constexpr std::array<std::string_view, 7> kHoldNames{"operator", "lamp",    "door",     "device",
+                                                     "disk",     "restart", "preempted"};
 constexpr std::array<std::string_view, 3> kTargetNames{"sample", "reference", "dark"};
 
 // The enum whose name stands at this place of the list.

@@ -42,8 +42,8 @@ inline constexpr std::array<ScanState, 10> kAllScanStates{
   return s == ScanState::Done || s == ScanState::FinishedEarly || s == ScanState::Aborted || s == ScanState::Failed;
 }
 
-/// Why a scan waits. Names: "operator", "lamp", "door", "device", "disk", "restart".
-enum class HoldName : std::uint8_t { Operator, Lamp, Door, Device, Disk, Restart };
+/// Why a scan waits. Names: "operator", "lamp", "door", "device", "disk", "restart", "preempted".
+enum class HoldName : std::uint8_t { Operator, Lamp, Door, Device, Disk, Restart, Preempted };
 [[nodiscard]] std::string_view hold_name(HoldName name);
 [[nodiscard]] std::optional<HoldName> hold_from_name(std::string_view name);
 
@@ -113,6 +113,21 @@ struct ScanPolicy {
 };
 [[nodiscard]] ScanPolicy policy_of(const api::Plan& plan);
 
+/// A scan's place in the queue.
+struct ScanTurn {
+  /// In both times: UTC is what was asked for, `at` what the daemon waits for. A step of the clock does not move it
+  /// before the next start of the daemon.
+  struct Start {
+    Instant at{};
+    UtcTime utc{};
+  };
+  int priority = 0;            ///< higher ones first, -100 to 100; of equal ones the older
+  bool preempts = false;       ///< runs inside a scan of lower priority, which holds meanwhile
+  std::optional<Start> start;  ///< not before
+  ScanId completes = 0;        ///< the scan whose missing points these are; 0: none
+};
+inline constexpr int kHighestPriority = 100;
+
 /// Accepts a scan, with everything that it will ever be recomputed from. Its points become rows here.
 /// An idempotency key that is there already writes nothing; the receipt then names the scan that has it.
 struct NewScan {
@@ -130,6 +145,7 @@ struct NewScan {
   std::string instrument_hash;  ///< of what counts: addresses are not part of it
   PlannedScan planned;
   std::string who;
+  ScanTurn turn{};
 };
 
 /// Writes `state`; what was asked for at the end of it stays known across a restart.
@@ -148,6 +164,17 @@ struct AddHold {
 struct ClearHolds {
   ScanId scan = 0;
   std::string who;
+  std::vector<HoldName> names{};  ///< empty: all
+};
+/// Changes what is not measured yet. What is absent stays.
+struct ScanChange {
+  ScanId scan = 0;
+  std::optional<double> target_snr{};
+  std::optional<Duration> max_time{};
+  std::optional<int> priority{};
+  std::optional<ScanTurn::Start> start{};
+  /// The points still to be measured, in their new order: they share out the ranks that they have.
+  std::vector<std::int32_t> order{};
 };
 
 enum class AttemptOutcome : std::uint8_t { Accepted, Failed, Dropped };
@@ -204,8 +231,8 @@ struct AuditEntry {
   std::string detail;
 };
 
-using StoreWrite =
-    std::variant<NewScan, ScanTransition, AddHold, ClearHolds, NewAttempt, SkipItem, NewVisit, NewBrdf, AuditEntry>;
+using StoreWrite = std::variant<NewScan, ScanTransition, AddHold, ClearHolds, NewAttempt, SkipItem, NewVisit, NewBrdf,
+                                AuditEntry, ScanChange>;
 
 /// What clients are told, once it is durable.
 struct NewEvent {
@@ -260,6 +287,7 @@ struct UnfinishedScan {
   std::vector<Duration> exposures_used;  ///< rungs that accepted readings used: each needs its closing dark
   bool dark_owed = false;                ///< items were accepted after the last dark visit
   TimeParts spent;
+  ScanTurn turn{};
 };
 
 }  // namespace gonio::daemon

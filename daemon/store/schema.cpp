@@ -282,7 +282,19 @@ CREATE TABLE power_reading(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4};
+// Version 5: the queue. A scan without a row has the ordinary turn: priority 0, as soon as it may.
+constexpr const char* kVersion5 = R"sql(
+CREATE TABLE scan_turn(
+  scan_id INTEGER PRIMARY KEY REFERENCES scan,
+  priority INTEGER NOT NULL,
+  preempts INTEGER NOT NULL,
+  start_utc_ns INTEGER,
+  completes_scan_id INTEGER REFERENCES scan(scan_id)
+) STRICT;
+CREATE INDEX scan_turn_by_completed ON scan_turn(completes_scan_id);
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

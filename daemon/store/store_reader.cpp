@@ -294,6 +294,10 @@ class SqliteStoreReader final : public StoreReader {
     info.spent = read_time_spent(*database_, id);
     // Times as UTC counts them: a reader has no clock, and only differences between holds mean something.
     info.holds = read_holds(*database_, id, Instant{}, UtcTime{});
+    info.turn = read_turn(*database_, id, Instant{}, UtcTime{});
+    Statement& completing = database_->statement("SELECT max(scan_id) FROM scan_turn WHERE completes_scan_id = ?");
+    completing.bind(id);
+    while (completing.next()) info.completed_by = completing.integer(0);
     return info;
   }
 

@@ -41,6 +41,8 @@ struct ScanInfo {
   ScanCounts counts;
   TimeParts spent;          ///< sums over all attempts and visits
   std::vector<Hold> holds;  ///< since: only differences within this boot mean something
+  ScanTurn turn;            ///< of its start, UTC only
+  ScanId completed_by = 0;  ///< the newest scan that was made of its missing points; 0: none
 };
 
 /// The texts a scan was accepted with, as they were.

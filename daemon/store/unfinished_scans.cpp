@@ -56,6 +56,7 @@ void read_dark_needs(Database& database, UnfinishedScan& scan) {
 }
 
 void complete(Database& database, UnfinishedScan& scan, Instant now, UtcTime utc_now) {
+  scan.turn = read_turn(database, scan.id, now, utc_now);
   scan.points = read_points(database, scan.id, -1, std::numeric_limits<std::int64_t>::max());
   for (const ScanPoint& point : scan.points) {
     if (!point.blocked) scan.order.push_back(point.index);
@@ -121,6 +122,23 @@ std::vector<Hold> read_holds(Database& database, ScanId scan, Instant now, UtcTi
                          .since = now - ago});
   }
   return holds;
+}
+
+ScanTurn read_turn(Database& database, ScanId scan, Instant now, UtcTime utc_now) {
+  ScanTurn turn;
+  Statement& query =
+      database.statement("SELECT priority, preempts, start_utc_ns, completes_scan_id FROM scan_turn WHERE scan_id = ?")
+          .bind(scan);
+  while (query.next()) {
+    turn.priority = static_cast<int>(query.integer(0));
+    turn.preempts = query.integer(1) != 0;
+    if (!query.is_null(2)) {
+      const UtcTime utc{Duration(query.integer(2))};
+      turn.start = ScanTurn::Start{.at = now + (utc - utc_now), .utc = utc};
+    }
+    if (!query.is_null(3)) turn.completes = query.integer(3);
+  }
+  return turn;
 }
 
 TimeParts read_time_spent(Database& database, ScanId scan) {

@@ -17,6 +17,8 @@ namespace gonio::daemon {
                                                  std::int64_t at_most);
 /// Holds in force.
 [[nodiscard]] std::vector<Hold> read_holds(Database& database, ScanId scan, Instant now, UtcTime utc_now);
+/// Its place in the queue, the start carried into this boot by UTC.
+[[nodiscard]] ScanTurn read_turn(Database& database, ScanId scan, Instant now, UtcTime utc_now);
 /// The sum over all attempts and visits.
 [[nodiscard]] TimeParts read_time_spent(Database& database, ScanId scan);
 /// The policy in columns `first` and after: target_snr, max_time_ns, exposures_ns, block_ns, dark_every_ns,

@@ -86,5 +86,19 @@ TEST_F(OldStore, OfVersion1GetsATableForRadiometersAndKeepsItsReadings) {
   EXPECT_EQ(file.execAndGet("SELECT count(*) FROM power_reading").getInt(), 0);
 }
 
+TEST_F(OldStore, OfVersion1HasScansOfOrdinaryTurn) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto info = (*StoreReader::open(path_))->scan(1);
+
+  ASSERT_TRUE(info) << describe(info.error());
+  EXPECT_EQ(info->turn.priority, 0);
+  EXPECT_FALSE(info->turn.preempts || info->turn.start);
+  EXPECT_EQ(info->turn.completes, 0);
+  EXPECT_EQ(info->completed_by, 0);
+}
+
 }  // namespace
 }  // namespace gonio::daemon
