@@ -1,0 +1,190 @@
+#include "reflectance/formats/csv_file.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "reflectance/formats/sidecar_json.h"
+#include "reflectance/formats/text_lines.h"
+
+namespace gonio::formats {
+namespace {
+
+struct NumberColumn {
+  std::string_view name;
+  double BrdfPoint::*field;
+  bool is_needed;
+};
+constexpr std::array kNumberColumns{NumberColumn{"theta_i_deg", &BrdfPoint::theta_i_deg, true},
+                                    NumberColumn{"phi_i_deg", &BrdfPoint::phi_i_deg, true},
+                                    NumberColumn{"theta_r_deg", &BrdfPoint::theta_r_deg, true},
+                                    NumberColumn{"phi_r_deg", &BrdfPoint::phi_r_deg, true},
+                                    NumberColumn{"f_per_sr", &BrdfPoint::f_per_sr, true},
+                                    NumberColumn{"U_per_sr", &BrdfPoint::U_per_sr, false},
+                                    NumberColumn{"k", &BrdfPoint::k, false},
+                                    NumberColumn{"u_shared_per_sr", &BrdfPoint::u_shared_per_sr, false}};
+constexpr std::string_view kChannelColumn = "channel";
+constexpr std::string_view kWavelengthColumn = "wavelength_nm";
+constexpr std::string_view kFlagsColumn = "flags";
+
+std::string flags_text(const MeasuredBrdf& brdf, std::uint32_t flags) {
+  std::string text;
+  for (std::size_t bit = 0; bit < brdf.flag_names.size(); ++bit) {
+    if (((flags >> static_cast<unsigned>(bit)) & 1U) == 0) continue;
+    if (!text.empty()) text += '|';
+    text += brdf.flag_names[bit];
+  }
+  return text;
+}
+
+class CsvReader {
+ public:
+  CsvReader(std::string_view csv, const Sidecar* sidecar, const std::string& file)
+      : lines_(csv, "CSV", file), sidecar_(sidecar) {
+    if (sidecar != nullptr) brdf_ = sidecar->brdf;
+  }
+
+  Result<MeasuredBrdf> read() {
+    GONIO_TRY(read_names());
+    while (const std::optional<std::string_view> line = lines_.next()) {
+      if (line->empty() && lines_.bytes_left() == 0) break;
+      GONIO_TRY(read_row(*line));
+    }
+    if (!lines_.line_was_ended()) return failure(lines_.error("", "the last line has no end", "a whole file"));
+    if (sidecar_ != nullptr && brdf_.points.size() != sidecar_->points)
+      return failure(lines_.error("", fmt::format("{} points", brdf_.points.size()),
+                                  fmt::format("{}, as its sidecar says", sidecar_->points)));
+    if (brdf_.channels.empty()) brdf_.channels.push_back({});
+    GONIO_TRY(check(brdf_, lines_.file()));
+    return std::move(brdf_);
+  }
+
+ private:
+  Result<void> read_names() {
+    const std::optional<std::string_view> line = lines_.next();
+    if (!line) return failure(lines_.error("", "an empty file", "a row of column names"));
+    for (const std::string_view cell : split(*line, ',')) {
+      const std::string name(trimmed(cell));
+      const bool is_known =
+          name == kChannelColumn || name == kWavelengthColumn || name == kFlagsColumn ||
+          std::ranges::any_of(kNumberColumns, [&](const NumberColumn& column) { return column.name == name; });
+      if (!is_known) return failure(lines_.error(one_line(name.substr(0, 40)), "an unknown column"));
+      if (std::ranges::count(names_, name) > 0) return failure(lines_.error(name, "the column stands twice"));
+      names_.push_back(name);
+    }
+    for (const NumberColumn& column : kNumberColumns) {
+      if (column.is_needed && std::ranges::count(names_, column.name) == 0)
+        return failure(lines_.error(std::string(column.name), "the column is absent", "required"));
+    }
+    if (sidecar_ == nullptr || std::ranges::count(names_, kChannelColumn) == 1) return {};
+    return failure(lines_.error(std::string(kChannelColumn), "the column is absent", "required beside a sidecar"));
+  }
+
+  Result<void> read_row(std::string_view line) {
+    const std::vector<std::string_view> cells = split(line, ',');
+    if (cells.size() != names_.size())
+      return failure(lines_.error("", fmt::format("{} cells", cells.size()), fmt::format("{}", names_.size())));
+    BrdfPoint point;
+    for (std::size_t n = 0; n < cells.size(); ++n) GONIO_TRY(read_cell(names_[n], cells[n], point));
+    brdf_.points.push_back(point);
+    return {};
+  }
+
+  Result<void> read_cell(const std::string& name, std::string_view cell, BrdfPoint& point) {
+    for (const NumberColumn& column : kNumberColumns) {
+      if (column.name != name) continue;
+      const Result<double> value = lines_.number(cell, name);
+      if (!value) return failure(value.error());
+      point.*column.field = *value;
+      return {};
+    }
+    if (name == kFlagsColumn) return read_flags(cell, point);
+    // A sidecar's channels go by the channel column, a lone CSV's by the wavelength.
+    if (name == (sidecar_ != nullptr ? kChannelColumn : kWavelengthColumn)) return read_channel(name, cell, point);
+    return {};
+  }
+
+  Result<void> read_channel(const std::string& name, std::string_view cell, BrdfPoint& point) {
+    if (sidecar_ != nullptr) {
+      const Result<std::size_t> index = lines_.whole(cell, name, 0, kMostPoints);
+      if (!index) return failure(index.error());
+      point.channel = static_cast<std::uint32_t>(*index);
+      return {};
+    }
+    const Result<double> wavelength = trimmed(cell).empty() ? Result<double>(0.0) : lines_.number(cell, name);
+    if (!wavelength) return failure(wavelength.error());
+    const auto [at, is_new] = by_wavelength_.emplace(*wavelength, static_cast<std::uint32_t>(brdf_.channels.size()));
+    if (is_new) brdf_.channels.push_back(*wavelength > 0.0 ? channel_at(*wavelength) : Channel{});
+    point.channel = at->second;
+    return {};
+  }
+
+  Result<void> read_flags(std::string_view cell, BrdfPoint& point) {
+    if (cell.empty()) return {};
+    constexpr std::size_t kMostFlagNames = 32;
+    for (const std::string_view name : split(cell, '|')) {
+      const auto at = std::ranges::find(brdf_.flag_names, name);
+      const auto bit = static_cast<unsigned>(at - brdf_.flag_names.begin());
+      if (at == brdf_.flag_names.end()) {
+        if (sidecar_ != nullptr || brdf_.flag_names.size() == kMostFlagNames)
+          return failure(
+              lines_.error(std::string(kFlagsColumn), "an unknown flag", "those of the sidecar, at most 32"));
+        brdf_.flag_names.emplace_back(name);
+      }
+      point.flags |= 1U << bit;
+    }
+    return {};
+  }
+
+  TextLines lines_;
+  const Sidecar* sidecar_;
+  std::vector<std::string> names_;
+  std::map<double, std::uint32_t> by_wavelength_;
+  MeasuredBrdf brdf_;
+};
+
+Result<void> check_flag_names(const MeasuredBrdf& brdf) {
+  for (const std::string& name : brdf.flag_names) {
+    if (!name.empty() && name.find_first_of(",|\r\n") == std::string::npos) continue;
+    return failure({.code = ErrorCode::InvalidInput,
+                    .tried = "write CSV",
+                    .seen = fmt::format("the flag '{}'", name),
+                    .limit = "a name without comma, bar and line's end"});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Export> write_csv(const MeasuredBrdf& brdf) {
+  GONIO_TRY(check(brdf, "CSV"));
+  GONIO_TRY(check_flag_names(brdf));
+  std::string csv;
+  constexpr std::size_t kUsualRow = 120;
+  csv.reserve(brdf.points.size() * kUsualRow);
+  for (const NumberColumn& column : kNumberColumns) csv.append(column.name).append(",");
+  csv.append(kChannelColumn).append(",").append(kWavelengthColumn).append(",").append(kFlagsColumn).append("\n");
+  for (const BrdfPoint& point : brdf.points) {
+    for (const NumberColumn& column : kNumberColumns) csv.append(number_text(point.*column.field)).append(",");
+    const double wavelength = brdf.channels[point.channel].wavelength_nm;
+    csv.append(fmt::format("{},{},", point.channel, wavelength > 0.0 ? number_text(wavelength) : ""));
+    csv.append(flags_text(brdf, point.flags)).append("\n");
+  }
+  Export written;
+  written.files.push_back({.suffix = ".csv", .bytes = std::move(csv)});
+  written.files.push_back({.suffix = ".json", .bytes = sidecar_json(brdf)});
+  return written;
+}
+
+Result<MeasuredBrdf> read_csv(std::string_view csv, std::optional<std::string_view> sidecar, const std::string& file) {
+  if (!sidecar) return CsvReader(csv, nullptr, file).read();
+  const Result<Sidecar> beside = read_sidecar_json(*sidecar, file);
+  if (!beside) return failure(beside.error());
+  return CsvReader(csv, &*beside, file).read();
+}
+
+}  // namespace gonio::formats
