@@ -86,9 +86,11 @@ bool Instrument::start_exposure(Duration duration, double gain_db, Instant now) 
   if (running_) return false;
   stage_.open_gate(now_);
   const StagePose here = pose(now_);
+  const ExposedPlace place = place_of(light_path_, here);
   ++memory_.exposures;
-  if (here.source_open && here.detector_open) ++memory_.lit_exposures;
-  ++memory_.places[place_of(light_path_, here)];
+  if (place.is_lit) ++memory_.lit_exposures;
+  ++memory_.places[place];
+  if (witness_) witness_({memory_.exposures, place, stage_.memory(now_), scene_time_s(now_)});
   running_ = Running{.open = now_,
                      .close = now_ + duration,
                      .integrated_to = now_,

@@ -3,8 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/clock.h"
@@ -36,6 +38,14 @@ struct LightCollection {
   double light = 0.0;  ///< mean over the stretch, on the detector's side: sample, filter, shutters, lamp
   double lamp = 0.0;   ///< mean of the lamp alone, as a monitor beside it sees it
   std::optional<Wavelength> wavelength;  ///< of the filter that stands in the light at the end
+};
+
+/// An exposure that begins, for whoever keeps count.
+struct ExposureNote {
+  std::uint64_t number = 0;  ///< from 1, over all runs
+  ExposedPlace place;
+  StageMemory stage;
+  double scene_time_s = 0.0;
 };
 
 /// What the instrument keeps from one run of the simulator to the next.
@@ -86,6 +96,8 @@ class Instrument {
 
   /// Begins an exposure of `duration` > 0 of wall time; false: one is under way.
   bool start_exposure(Duration duration, double gain_db, Instant now);
+  /// `witness` is told of each exposure before it begins. Called with whatever lock the instrument is under.
+  void tell_exposures_to(std::function<void(const ExposureNote&)> witness) { witness_ = std::move(witness); }
   [[nodiscard]] std::optional<Instant> exposure_end() const;
   /// The last finished exposure, once.
   [[nodiscard]] std::optional<Exposure> take_exposure(Instant now);
@@ -160,6 +172,7 @@ class Instrument {
   std::optional<Running> running_;
   std::optional<Exposure> finished_;
   std::vector<Collector> collectors_;
+  std::function<void(const ExposureNote&)> witness_;
 };
 
 }  // namespace gonio::sim

@@ -21,8 +21,15 @@ std::string camera_candidate(const std::string& folder, unsigned attempt) {
 
 }  // namespace
 
-Simulator::Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, const Clock& clock)
-    : folder_(std::move(folder)), instrument_(std::move(scene), std::move(memory), clock) {}
+Simulator::Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, ExposureJournal journal,
+                     const Clock& clock)
+    : folder_(std::move(folder)),
+      journal_(std::move(journal)),
+      instrument_(std::move(scene), std::move(memory), clock) {
+  instrument_.with([this](LiveInstrument::Parts& parts) {
+    parts.instrument.tell_exposures_to([this](const ExposureNote& exposure) { journal_.note(exposure); });
+  });
+}
 
 Result<std::unique_ptr<Simulator>> Simulator::start(Scene scene, const std::string& state_folder,
                                                     const WireWishes& wishes, const Clock& clock) {
@@ -31,7 +38,10 @@ Result<std::unique_ptr<Simulator>> Simulator::start(Scene scene, const std::stri
   folder->remove_ready();
   auto last = folder->load();
   if (!last) return failure(std::move(last).error());
-  std::unique_ptr<Simulator> simulator(new Simulator(std::move(scene), *std::move(folder), last->instrument, clock));
+  auto journal = ExposureJournal::open(folder->exposure_journal());
+  if (!journal) return failure(std::move(journal).error());
+  std::unique_ptr<Simulator> simulator(
+      new Simulator(std::move(scene), *std::move(folder), last->instrument, *std::move(journal), clock));
   GONIO_TRY(simulator->bind(*last, wishes));
   GONIO_TRY(simulator->folder_.write_papers(simulator->instrument_.scene(), simulator->addresses_));
   GONIO_TRY(simulator->save());

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "sim/goniosim/control_server.h"
+#include "sim/goniosim/exposure_journal.h"
 #include "sim/goniosim/state_folder.h"
 #include "sim/wires/gige_camera_server.h"
 #include "sim/wires/live_instrument.h"
@@ -43,13 +44,14 @@ class Simulator {
   [[nodiscard]] Result<void> save();
 
  private:
-  Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, const Clock& clock);
+  Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, ExposureJournal journal, const Clock& clock);
   [[nodiscard]] Result<void> bind(const SimulatorState& last, const WireWishes& wishes);
   [[nodiscard]] Result<void> bind_stage(const SimulatorState& last, const WireWishes& wishes);
   [[nodiscard]] Result<void> plug_radiometers(const WireWishes& wishes);
   [[nodiscard]] Result<void> bind_camera(const std::string& wished);
 
   StateFolder folder_;
+  ExposureJournal journal_;
   LiveInstrument instrument_;
   WireAddresses addresses_;
   std::uint64_t saved_exposures_ = 0;

@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "sim/goniosim/exposure_journal.h"
+
 namespace gonio::sim {
 namespace {
 
@@ -93,8 +95,12 @@ Result<StateFolder> StateFolder::open(const std::string& path) {
 Result<SimulatorState> StateFolder::load() const {
   std::ifstream file(path_ + "/state.json");
   if (!file) return SimulatorState{};
+  const auto journal = ExposureJournal::open(exposure_journal());
+  if (!journal) return failure(journal.error());
   try {
-    return state_of(json::parse(file));
+    SimulatorState state = state_of(json::parse(file));
+    journal->catch_up(state.instrument);
+    return state;
   } catch (const json::exception& trouble) {
     return failure(folder_error(ErrorCode::InvalidInput, fmt::format("read {}/state.json", path_), trouble.what()));
   }

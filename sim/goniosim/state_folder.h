@@ -24,7 +24,8 @@ class StateFolder {
   /// Makes the folder if need be. Errors: FileUnreadable (cannot be made), Busy (another simulator lives in it).
   [[nodiscard]] static Result<StateFolder> open(const std::string& path);
 
-  /// The state of the last run, or an empty one. Errors: InvalidInput (not what `save` writes).
+  /// The state of the last run up to its last exposure, or an empty one. Errors: InvalidInput (not what `save` writes),
+  /// DiskFull.
   [[nodiscard]] Result<SimulatorState> load() const;
   /// Errors: DiskFull.
   [[nodiscard]] Result<void> save(const SimulatorState& state) const;
@@ -35,6 +36,7 @@ class StateFolder {
   void remove_ready() const;
 
   [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::string exposure_journal() const { return path_ + "/exposures.journal"; }
   [[nodiscard]] std::string stage_line() const { return path_ + "/stage.tty"; }
   [[nodiscard]] std::string control_socket() const { return path_ + "/control.sock"; }
   [[nodiscard]] std::string instrument_file() const { return path_ + "/instrument.toml"; }
