@@ -28,12 +28,18 @@ ScanRig::ScanRig(Instrument instrument, std::optional<std::string> store_path)
 }
 
 void ScanRig::start() {
+  const auto started = try_start();
+  ASSERT_TRUE(started) << describe(started.error());
+}
+
+Result<void> ScanRig::try_start() {
   auto writer = StoreWriter::open({.path = path_, .boot_id = "boot", .version = "test"}, clock_);
-  ASSERT_TRUE(writer) << describe(writer.error());
+  if (!writer) return failure(writer.error());
   writer_ = std::move(*writer);
   store_.emplace(*writer_);
   sequencer_.emplace(SequencerConfig{.instrument = instrument_}, clock_.now());
   collect();
+  return {};
 }
 
 void ScanRig::kill() {

@@ -63,6 +63,9 @@ class ScanRig {
   /// The daemon is gone at once: what was under way between its parts is lost. The instrument goes on.
   void kill();
   void start();
+  /// The same where the store may refuse; nothing is started then.
+  [[nodiscard]] Result<void> try_start();
+  [[nodiscard]] bool is_started() const { return sequencer_.has_value(); }
 
   CommandId command(Verb verb, const std::string& who = "uid:1000");
   [[nodiscard]] const CommandReply* reply_to(CommandId id) const;
