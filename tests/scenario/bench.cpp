@@ -118,6 +118,14 @@ void Bench::reset_and_resume(long id) const {
   throw std::runtime_error("the scan did not resume: " + answer.body + "\n" + log());
 }
 
+void Bench::help_if_on_hold(long id) const {
+  const std::string path = "scans/" + std::to_string(id);
+  const HttpAnswer answer = daemon_->get(path);
+  if (answer.status != 200 || json::parse(answer.body).at("state") != "holding") return;
+  (void)daemon_->post("stage/reset");
+  (void)daemon_->post(path + "/resume");
+}
+
 std::string Bench::wait_for_state(long id, const std::vector<std::string>& states) const {
   std::string state;
   const auto is_there = [&] {

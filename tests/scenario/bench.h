@@ -52,6 +52,7 @@ class Bench {
   Bench(const std::string& scene_file, std::uint64_t seed);
 
   [[nodiscard]] const Simulator& simulator() const { return *simulator_; }
+  [[nodiscard]] Simulator& simulator() { return *simulator_; }
   [[nodiscard]] Daemon& daemon() { return *daemon_; }
   [[nodiscard]] const DaemonFiles& files() const { return files_; }
   [[nodiscard]] const std::string& folder() const { return folder_.path(); }
@@ -86,6 +87,8 @@ class Bench {
   /// Clears the stage's latch, then resumes: what an operator does once the cause is gone. Asked again while the
   /// device is still coming back.
   void reset_and_resume(long id) const;
+  /// The same once, and only if the scan is on hold: for an operator who looks in now and then.
+  void help_if_on_hold(long id) const;
   /// Waits until the scan's state is one of `states`; the state.
   std::string wait_for_state(long id, const std::vector<std::string>& states) const;
 

@@ -19,8 +19,8 @@ class Ledger {
   /// Events that a client received from one life, before its end. They must go on where the last ones stopped.
   void hear(const std::vector<ServerEvent>& events);
   /// What the disk holds and what the simulator counted after a life's end. All that was stored or told before must be
-  /// there as it was; at most one item may have been exposed in vain.
-  void inspect(const StoreCopy& store, const SeenExposures& exposures);
+  /// there as it was; at most one item may have been exposed in vain for each of the `kills` since the last inspection.
+  void inspect(const StoreCopy& store, const SeenExposures& exposures, long kills = 1);
   /// All events, as a client that starts from nothing is told them at the end.
   void expect_retold(const std::vector<ServerEvent>& events) const;
 

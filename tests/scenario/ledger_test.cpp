@@ -81,6 +81,17 @@ TEST_F(LedgerOfASmallStore, NoticesTwoItemsExposedInVainByOneKill) {
   EXPECT_NONFATAL_FAILURE(ledger_.inspect(store(), exposures), "one kill may cost one item");
 }
 
+TEST_F(LedgerOfASmallStore, AllowsAnItemForEachOfTheKillsSinceItLastLooked) {
+  ledger_.inspect(store(), seen());
+  SeenExposures exposures = seen(1);
+  exposures.total += 1;
+  exposures.dark = 1;
+
+  ledger_.inspect(store(), exposures, 2);
+
+  EXPECT_EQ(ledger_.items_exposed_again(), 2);
+}
+
 TEST_F(LedgerOfASmallStore, NoticesAnAcceptanceThatWasToldAndIsNotThere) {
   ledger_.hear({{1, "item-accepted", R"({"data":{"point":1,"target":"sample"}})"}});
   EXPECT_NONFATAL_FAILURE(ledger_.inspect(store(), seen()), "item 1 sample was told");

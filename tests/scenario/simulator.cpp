@@ -80,11 +80,26 @@ Simulator::Simulator(const std::string& folder, const std::string& scene_file, s
                      const std::string& stage_wire, long history, const std::string& stage)
     : state_(with_history(made(folder + "/bench"), history)),
       log_(folder + "/goniosim.log"),
-      process_({kGoniosim, scene_file, "--state", state_, "--seed", std::to_string(seed), "--camera-address",
-                own_camera_address(), "--stage-wire", stage_wire, "--stage", stage},
-               log_) {
-  const auto is_ready_or_gone = [&] { return std::filesystem::exists(state_ + "/ready") || !process_.is_running(); };
-  if (eventually(is_ready_or_gone, kStartDeadline) && process_.is_running()) return;
+      command_({kGoniosim, scene_file, "--state", state_, "--seed", std::to_string(seed), "--camera-address",
+                own_camera_address(), "--stage-wire", stage_wire, "--stage", stage}),
+      process_(command_, log_) {
+  wait_until_ready();
+}
+
+void Simulator::restart() {
+  process_ = Process(command_, log_);
+  wait_until_ready();
+}
+
+// One that was killed leaves its ready file behind: only its own counts.
+void Simulator::wait_until_ready() {
+  const auto is_ready = [&] {
+    const std::string ready = state_ + "/ready";
+    if (!std::filesystem::exists(ready)) return false;
+    const json said = json::parse(text_of(ready), nullptr, false);
+    return said.is_object() && said.value("pid", -1) == process_.pid();
+  };
+  if (eventually([&] { return is_ready() || !process_.is_running(); }, kStartDeadline) && process_.is_running()) return;
   throw std::runtime_error("goniosim did not come up. " + tail_of(log_));
 }
 

@@ -53,6 +53,11 @@ class Simulator {
   Simulator(const std::string& folder, const std::string& scene_file, std::uint64_t seed,
             const std::string& stage_wire = "tcp", long history = 0, const std::string& stage = "goniod");
 
+  /// SIGKILL: stage and camera are gone as by a power cut.
+  void kill() { process_.kill(); }
+  /// Again, on the same folder and addresses: a stage that has forgotten its home. Waits until it is up.
+  void restart();
+
   [[nodiscard]] const std::string& state_folder() const { return state_; }
   [[nodiscard]] std::string instrument_file() const { return state_ + "/instrument.toml"; }
   [[nodiscard]] std::string reference_folder() const { return state_ + "/reference"; }
@@ -83,9 +88,11 @@ class Simulator {
 
  private:
   void order(const std::string& line) const;
+  void wait_until_ready();
 
   std::string state_;
   std::string log_;
+  std::vector<std::string> command_;
   Process process_;
 };
 

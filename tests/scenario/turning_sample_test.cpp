@@ -16,7 +16,8 @@ namespace {
 constexpr std::uint64_t kSeed = 5;
 
 TEST(TurningSample, AScanAgreesWithTheTruthByChiSquare) {
-  Bench bench(std::string(kScenes) + "/turning.toml", kSeed);
+  const std::string scene = kScenes + std::string("/turning.toml");
+  Bench bench(scene, kSeed);
   bench.bring_up_daemon();
   // 27 combinations: at theta_i = 0 two of three azimuths are merged for each of three theta_r, at theta_r = 0 two of
   // three for each other theta_i; of the 17 points (0, 0) lies in the shadow.
