@@ -1,5 +1,6 @@
-// As power_sums.cpp: plain loops, -O3, for any x86-64 and for AVX2. Each of 16 lanes sums its own pixels, so that the
-// order of the sums is written here and not chosen by the compiler.
+// Plain loops for the compiler to vectorise (this file is built with -O3 whatever the build, see CMakeLists.txt), once
+// for any x86-64 and once for AVX2. Each of 16 lanes sums its own pixels, so that the order of the sums is written here
+// and not chosen by the compiler: both give the same bits.
 #include "calibration/map_sums.h"
 
 #include <algorithm>
