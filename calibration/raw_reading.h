@@ -56,7 +56,8 @@ struct RawFrame {
 struct RawReading {
   std::int64_t id = 0;
   Target target = Target::Sample;
-  std::optional<std::int32_t> point_index;  ///< of the plan; none for a dark
+  std::optional<std::int32_t> point_index;    ///< of the plan; none for a visit
+  std::optional<std::int32_t> visited_point;  ///< where a visit of the standard or the sample was made
   std::int64_t visit_id = 0;  ///< which visit or attempt it belongs to: readings of one visit share its noise
   Wavelength wavelength;
   Instant at{};  ///< middle of the exposures
@@ -74,7 +75,7 @@ struct PlannedPoint {
 struct ScanReadings {
   bool isotropic = true;
   std::vector<PlannedPoint> points;
-  std::vector<RawReading> readings;  ///< accepted attempts and all dark visits, in time order
+  std::vector<RawReading> readings;  ///< accepted attempts and all visits, in time order
 };
 
 }  // namespace gonio::calibration

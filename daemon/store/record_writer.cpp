@@ -67,9 +67,10 @@ void RecordWriter::operator()(const NewScan& scan) {
       "INSERT INTO scan(idempotency_key, name, campaign_id, sample_id, isotropic, reference_id, instrument_id, "
       "configuration_hash, plan_text, plan_file, plan_sha256, planner_version, target_snr, max_time_ns, exposures_ns, "
       "block_ns, "
-      "dark_every_ns, item_retries, on_item_error, on_restart, asked, merged, blocked, items, state, finish_asked, "
+      "dark_every_ns, item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, drift_limit, "
+      "drift_rounds, asked, merged, blocked, items, state, finish_asked, "
       "outcome, who, run_id, submitted_utc_ns, submitted_boottime_ns, changed_utc_ns) "
-      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
+      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
   scan.idempotency_key.empty() ? insert.bind_null() : insert.bind(scan.idempotency_key);
   insert.bind(scan.name);
   campaign == 0 ? insert.bind_null() : insert.bind(campaign);
@@ -80,6 +81,8 @@ void RecordWriter::operator()(const NewScan& scan) {
   insert.bind(scan.policy.dark_every.count()).bind(scan.policy.item_retries);
   insert.bind(kOnItemErrorNames[static_cast<std::size_t>(scan.policy.on_item_error)]);
   insert.bind(kOnRestartNames[static_cast<std::size_t>(scan.policy.on_restart)]);
+  insert.bind(scan.policy.reference_every.count()).bind(scan.policy.check_every.count());
+  insert.bind(scan.policy.drift_limit).bind(scan.policy.drift_rounds);
   insert.bind(scan.planned.asked).bind(scan.planned.merged).bind(scan.planned.blocked).bind(scan.planned.items);
   insert.bind(scan.who).bind(time_.run).bind(time_.utc_ns).bind(time_.boottime_ns).bind(time_.utc_ns).run();
   new_scan_ = database_.last_id();
@@ -162,9 +165,11 @@ void RecordWriter::operator()(const NewAttempt& attempt) {
 
 void RecordWriter::write_item(ScanId scan, const ItemKey& item, std::int64_t attempt, const std::string& who,
                               const std::string& reason) {
-  // Without ON CONFLICT: a second decision of an item fails the whole transaction.
+  // Without ON CONFLICT: a second decision of an item in one round fails the whole transaction.
   Statement& insert = database_.statement(
-      "INSERT INTO item(scan_id, point_index, target, outcome, attempt_id, who, reason) VALUES (?,?,?,?,?,?,?)");
+      "INSERT INTO item(scan_id, point_index, target, outcome, attempt_id, who, reason, round) "
+      "VALUES (?1,?2,?3,?4,?5,?6,?7,(SELECT count(*) + 1 FROM reopening WHERE scan_id = ?1 AND point_index = ?2 AND "
+      "target = ?3))");
   insert.bind(scan).bind(item.point).bind(target_name(item.target)).bind(attempt == 0 ? "skipped" : "accepted");
   attempt == 0 ? insert.bind_null() : insert.bind(attempt);
   insert.bind(who).bind(reason).run();
@@ -178,14 +183,38 @@ void RecordWriter::operator()(const NewVisit& visit) {
   Statement& insert = database_.statement(
       "INSERT INTO visit(scan_id, kind, after_attempt, move_ns, settle_ns, expose_ns, read_ns, idle_ns, run_id, "
       "started_boottime_ns, boottime_ns, utc_ns) "
-      "VALUES (?,'dark',(SELECT coalesce(max(attempt_id), 0) FROM attempt),?,?,?,?,?,?,?,?,?)");
-  insert.bind(visit.scan);
+      "VALUES (?,?,(SELECT coalesce(max(attempt_id), 0) FROM attempt),?,?,?,?,?,?,?,?,?)");
+  insert.bind(visit.scan).bind(visit_kind_name(visit.kind));
   bind_time_parts(insert, visit.time);
   insert.bind(time_.run).bind(visit.started.time_since_epoch().count()).bind(time_.boottime_ns).bind(time_.utc_ns);
   insert.run();
   const std::int64_t id = database_.last_id();
   std::int64_t sequence = 0;
   for (const ReadingRecord& reading : visit.readings) write_reading(reading, 0, id, ++sequence);
+  if (visit.level) write_level(visit, id);
+  for (const ItemKey& item : visit.reopened) reopen(visit.scan, item, id);
+}
+
+void RecordWriter::write_level(const NewVisit& visit, std::int64_t id) {
+  Statement& insert = database_.statement("INSERT INTO visit_level VALUES (?,?,?,?,?,?,?)");
+  insert.bind(id).bind(visit.scan).bind(visit.level->point);
+  insert.bind(visit.kind == VisitKind::Reference ? "reference" : "sample");
+  insert.bind(visit.level->level).bind(visit.level->u_relative);
+  visit.level->drift ? insert.bind(*visit.level->drift) : insert.bind_null();
+  insert.run();
+}
+
+void RecordWriter::reopen(ScanId scan, const ItemKey& item, std::int64_t visit) {
+  Statement& insert = database_.statement(
+      "INSERT INTO reopening SELECT scan_id, point_index, target, round, ? FROM decided_item WHERE scan_id = ? AND "
+      "point_index = ? AND target = ? AND outcome = 'accepted' RETURNING round");
+  insert.bind(visit).bind(scan).bind(item.point).bind(target_name(item.target));
+  if (single_integer(insert) != 0) return;
+  database_.fail(Error{.code = ErrorCode::StoreFailed,
+                       .device = "store",
+                       .tried = "open the " + std::string(target_name(item.target)) + " item of point " +
+                                std::to_string(item.point) + " of scan " + std::to_string(scan) + " again",
+                       .seen = "it is not accepted in its present round"});
 }
 
 void RecordWriter::write_reading(const ReadingRecord& reading, std::int64_t attempt, std::int64_t visit,

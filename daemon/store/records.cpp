@@ -13,6 +13,7 @@ constexpr std::array<std::string_view, 10> kStateNames{"queued", "preparing",   
 constexpr std::array<std::string_view, 7> kHoldNames{"operator", "lamp",    "door",     "device",
                                                      "disk",     "restart", "preempted"};
 constexpr std::array<std::string_view, 3> kTargetNames{"sample", "reference", "dark"};
+constexpr std::array<std::string_view, 3> kVisitKindNames{"dark", "reference", "check"};
 
 // The enum whose name stands at this place of the list.
 template <class E, std::size_t N>
@@ -45,6 +46,10 @@ std::optional<Target> target_from_name(std::string_view name) {
   return from_name<Target>(kTargetNames, name);
 }
 
+std::string_view visit_kind_name(VisitKind kind) {
+  return kVisitKindNames[static_cast<std::size_t>(kind)];
+}
+
 ScanPolicy policy_of(const api::Plan& plan) {
   return ScanPolicy{.target_snr = plan.target_snr,
                     .max_time = plan.max_time,
@@ -53,7 +58,11 @@ ScanPolicy policy_of(const api::Plan& plan) {
                     .dark_every = plan.dark_every,
                     .item_retries = plan.item_retries,
                     .on_item_error = plan.on_item_error,
-                    .on_restart = plan.on_restart};
+                    .on_restart = plan.on_restart,
+                    .reference_every = plan.reference_every,
+                    .check_every = plan.check_every,
+                    .drift_limit = plan.drift_limit,
+                    .drift_rounds = plan.drift_rounds};
 }
 
 }  // namespace gonio::daemon

@@ -109,6 +109,10 @@ struct ScanPolicy {
   int item_retries = 2;
   api::OnItemError on_item_error = api::OnItemError::Skip;
   api::OnRestart on_restart = api::OnRestart::Resume;
+  Duration reference_every{};  ///< zero: no such visits
+  Duration check_every{};      ///< likewise
+  double drift_limit = 0.005;  ///< relative, between two visits
+  int drift_rounds = 2;        ///< how often a point is measured again for it
   friend bool operator==(const ScanPolicy&, const ScanPolicy&) = default;
 };
 [[nodiscard]] ScanPolicy policy_of(const api::Plan& plan);
@@ -177,9 +181,24 @@ struct ScanChange {
   std::vector<std::int32_t> order{};
 };
 
+/// "dark", "reference" (the standard at one geometry), "check" (the sample likewise).
+enum class VisitKind : std::uint8_t { Dark, Reference, Check };
+inline constexpr std::array<VisitKind, 3> kAllVisitKinds{VisitKind::Dark, VisitKind::Reference, VisitKind::Check};
+[[nodiscard]] std::string_view visit_kind_name(VisitKind kind);
+
+/// What a lit visit saw.
+struct VisitLevel {
+  std::int32_t point = 0;  ///< the plan's, whose geometry and wavelength it was made at
+  /// Light per unit of exposure and monitor above the dark, as the sequencer judges it (the calibration makes its own
+  /// of the readings); of a check, where the plan has reference visits too, in units of the one before it.
+  double level = 0.0;
+  double u_relative = 0.0;      ///< standard uncertainty of it
+  std::optional<double> drift;  ///< relative, since the visit of this kind before; none: it is the first
+};
+
 enum class AttemptOutcome : std::uint8_t { Accepted, Failed, Dropped };
-/// One try at an item with all its readings. `Accepted` also writes the item; a second acceptance of an item is refused
-/// by the schema and fails the transaction.
+/// One try at an item with all its readings. `Accepted` also writes the item's row of this round; a second acceptance
+/// in one round is refused by the schema and fails the transaction.
 struct NewAttempt {
   ScanId scan = 0;
   ItemKey item;
@@ -196,12 +215,16 @@ struct SkipItem {
   std::string who;
   std::string reason;
 };
-/// A visit of the dark with all its readings.
+/// A visit with all its readings. What it reopens is open again by the same transaction: the decision stays and counts
+/// no more, the next one is of the next round. An item that is not accepted in its present round fails the transaction.
 struct NewVisit {
   ScanId scan = 0;
   TimeParts time;
   std::vector<ReadingRecord> readings;
   Instant started{};
+  VisitKind kind = VisitKind::Dark;
+  std::optional<VisitLevel> level;  ///< of a reference or check visit
+  std::vector<ItemKey> reopened;
 };
 
 /// One BRDF value as stored. Values in sr^-1.
@@ -268,6 +291,12 @@ struct CommitReceipt {
   std::vector<EventRecord> events;
 };
 
+/// The last lit visit of one kind, and the items in force that were accepted after it: nobody has judged them yet.
+struct LastVisit {
+  std::optional<VisitLevel> level;  ///< none: there was no such visit
+  std::vector<ItemKey> since;
+};
+
 /// A scan that is not over, as the store has it.
 struct UnfinishedScan {
   ScanId id = 0;
@@ -285,7 +314,11 @@ struct UnfinishedScan {
   std::vector<std::pair<ItemKey, int>> attempts;  ///< how many, of items that are not decided
   std::vector<Hold> holds;
   std::vector<Duration> exposures_used;  ///< rungs that accepted readings used: each needs its closing dark
-  bool dark_owed = false;                ///< items were accepted after the last dark visit
+  bool dark_owed = false;                ///< light was taken after the last dark visit
+  LastVisit last_reference;
+  LastVisit last_check;
+  std::vector<std::pair<std::int32_t, int>> reopened;  ///< points, and how often
+  double largest_drift = 0.0;                          ///< seen between two visits
   TimeParts spent;
   ScanTurn turn{};
 };

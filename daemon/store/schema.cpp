@@ -294,7 +294,54 @@ CREATE TABLE scan_turn(
 CREATE INDEX scan_turn_by_completed ON scan_turn(completes_scan_id);
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
+// Version 6: visits of the standard and of the sample. An item is decided once in each round; a row of `reopening`, of
+// the visit that saw a drift, ends a round. What is in force is `decided_item`.
+constexpr const char* kVersion6 = R"sql(
+ALTER TABLE scan ADD COLUMN reference_every_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE scan ADD COLUMN check_every_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE scan ADD COLUMN drift_limit REAL NOT NULL DEFAULT 0.005;
+ALTER TABLE scan ADD COLUMN drift_rounds INTEGER NOT NULL DEFAULT 2;
+CREATE TABLE visit_level(
+  visit_id INTEGER PRIMARY KEY REFERENCES visit,
+  scan_id INTEGER NOT NULL,
+  point_index INTEGER NOT NULL,
+  target TEXT NOT NULL CHECK (target IN ('sample', 'reference')),
+  level REAL NOT NULL,
+  u_relative REAL NOT NULL,
+  drift REAL,
+  FOREIGN KEY (scan_id, point_index) REFERENCES point
+) STRICT;
+CREATE TABLE item_by_round(
+  scan_id INTEGER NOT NULL,
+  point_index INTEGER NOT NULL,
+  target TEXT NOT NULL CHECK (target IN ('sample', 'reference')),
+  round INTEGER NOT NULL CHECK (round > 0),
+  outcome TEXT NOT NULL CHECK (outcome IN ('accepted', 'skipped')),
+  attempt_id INTEGER UNIQUE REFERENCES attempt,
+  who TEXT NOT NULL,
+  reason TEXT NOT NULL,
+  PRIMARY KEY (scan_id, point_index, target, round),
+  FOREIGN KEY (scan_id, point_index) REFERENCES point,
+  CHECK ((outcome = 'accepted') = (attempt_id IS NOT NULL))
+) STRICT, WITHOUT ROWID;
+INSERT INTO item_by_round SELECT scan_id, point_index, target, 1, outcome, attempt_id, who, reason FROM item;
+DROP TABLE item;
+ALTER TABLE item_by_round RENAME TO item;
+CREATE TABLE reopening(
+  scan_id INTEGER NOT NULL,
+  point_index INTEGER NOT NULL,
+  target TEXT NOT NULL,
+  round INTEGER NOT NULL,
+  visit_id INTEGER NOT NULL REFERENCES visit,
+  PRIMARY KEY (scan_id, point_index, target, round),
+  FOREIGN KEY (scan_id, point_index, target, round) REFERENCES item
+) STRICT, WITHOUT ROWID;
+CREATE VIEW decided_item AS SELECT i.* FROM item i WHERE NOT EXISTS (SELECT 1 FROM reopening r WHERE
+  r.scan_id = i.scan_id AND r.point_index = i.point_index AND r.target = i.target AND r.round = i.round);
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3,
+                                                              kVersion4, kVersion5, kVersion6};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

@@ -15,8 +15,9 @@ namespace gonio::daemon {
 namespace {
 
 // Durations that were asked for, or that a device said: no times of ours.
-constexpr std::array<std::string_view, 6> kNoTimes{"exposure_ns", "exposures_ns",  "max_time_ns",
-                                                   "block_ns",    "dark_every_ns", "camera_time_ns"};
+constexpr std::array<std::string_view, 8> kNoTimes{"exposure_ns",    "exposures_ns",  "max_time_ns",
+                                                   "block_ns",       "dark_every_ns", "reference_every_ns",
+                                                   "check_every_ns", "camera_time_ns"};
 constexpr std::size_t kMostShown = 120;  // letters of a value in a sentence
 
 bool is_a_time(std::string_view column) {

@@ -35,6 +35,7 @@ UtcTime utc_from(std::int64_t ns) {
 // What one reading row is, before rows are put together.
 struct ReadingRow {
   std::int64_t owner = 0;  // RawReading::visit_id
+  bool is_visit = false;
   Target target = Target::Dark;
   std::optional<std::int32_t> point;
   double wavelength_nm = 0.0;
@@ -71,9 +72,11 @@ ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& st
   ReadingRow reading;
   const bool is_visit = row.is_null(1);
   reading.owner = is_visit ? 2 * row.integer(2) + 1 : 2 * row.integer(1);
-  reading.target = is_visit ? Target::Dark : target_from_name(row.text(3)).value_or(Target::Sample);
-  if (!is_visit) reading.point = static_cast<std::int32_t>(row.integer(4));
-  if (!is_visit) reading.wavelength_nm = row.real(5);
+  reading.is_visit = is_visit;
+  const bool is_dark = row.is_null(3);
+  reading.target = is_dark ? Target::Dark : target_from_name(row.text(3)).value_or(Target::Sample);
+  if (!is_dark) reading.point = static_cast<std::int32_t>(row.integer(4));
+  if (!is_dark) reading.wavelength_nm = row.real(5);
   reading.id = row.integer(0);
   const auto scale = scale_of_run.find(row.integer(6));
   reading.at = Instant(Duration(row.integer(7) + (scale == scale_of_run.end() ? 0 : scale->second)));
@@ -88,7 +91,7 @@ ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& st
   reading.frame.monitor_mean = row.real(16);
   reading.frame.monitor_se = row.real(17);
   reading.frame.detector_temperature_c = row.real(18);
-  const Geometry* planned = is_visit ? nullptr : &points.at(static_cast<std::size_t>(*reading.point)).geometry;
+  const Geometry* planned = is_dark ? nullptr : &points.at(static_cast<std::size_t>(*reading.point)).geometry;
   reading.frame.at_open = geometry_from_counts(row, 19, stage, planned);
   reading.frame.at_close = geometry_from_counts(row, 25, stage, planned);
   if (!row.is_null(31)) {
@@ -110,7 +113,8 @@ class ReadingCollector {
     if (is_new) {
       readings_.push_back(RawReading{.id = row.id,
                                      .target = row.target,
-                                     .point_index = row.point,
+                                     .point_index = row.is_visit ? std::nullopt : row.point,
+                                     .visited_point = row.is_visit ? row.point : std::nullopt,
                                      .visit_id = row.owner,
                                      .wavelength = nanometres(row.wavelength_nm),
                                      .at = row.at});
@@ -267,7 +271,8 @@ class SqliteStoreReader final : public StoreReader {
             ->statement(
                 "SELECT s.scan_id, s.name, coalesce(c.name, ''), p.name, isotropic, state, outcome, who, serial, "
                 "configuration_hash, submitted_utc_ns, changed_utc_ns, merged, blocked, items, target_snr, "
-                "max_time_ns, exposures_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan "
+                "max_time_ns, exposures_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart, "
+                "reference_every_ns, check_every_ns, drift_limit, drift_rounds FROM scan "
                 "s "
                 "JOIN sample p USING (sample_id) JOIN reference_standard USING (reference_id) "
                 "LEFT JOIN campaign c USING (campaign_id) WHERE s.scan_id = ?")
@@ -292,6 +297,7 @@ class SqliteStoreReader final : public StoreReader {
     if (info.id == 0) return info;
     add_counts(info);
     info.spent = read_time_spent(*database_, id);
+    info.largest_drift = read_largest_drift(*database_, id);
     // Times as UTC counts them: a reader has no clock, and only differences between holds mean something.
     info.holds = read_holds(*database_, id, Instant{}, UtcTime{});
     info.turn = read_turn(*database_, id, Instant{}, UtcTime{});
@@ -304,9 +310,12 @@ class SqliteStoreReader final : public StoreReader {
   void add_counts(ScanInfo& info) {
     Statement& query = database_->statement(
         "SELECT (SELECT count(*) FROM point WHERE scan_id = ?1), "
-        "(SELECT count(*) FROM item WHERE scan_id = ?1 AND outcome = 'accepted'), "
-        "(SELECT count(*) FROM item WHERE scan_id = ?1 AND outcome = 'skipped'), "
-        "(SELECT count(*) FROM attempt WHERE scan_id = ?1), (SELECT count(*) FROM visit WHERE scan_id = ?1)");
+        "(SELECT count(*) FROM decided_item WHERE scan_id = ?1 AND outcome = 'accepted'), "
+        "(SELECT count(*) FROM decided_item WHERE scan_id = ?1 AND outcome = 'skipped'), "
+        "(SELECT count(*) FROM attempt WHERE scan_id = ?1), (SELECT count(*) FROM visit WHERE scan_id = ?1), "
+        "(SELECT count(*) FROM visit WHERE scan_id = ?1 AND kind = 'reference'), "
+        "(SELECT count(*) FROM visit WHERE scan_id = ?1 AND kind = 'check'), "
+        "(SELECT count(DISTINCT point_index) FROM reopening WHERE scan_id = ?1)");
     query.bind(info.id);
     while (query.next()) {
       info.counts.points = query.integer(0);
@@ -314,6 +323,9 @@ class SqliteStoreReader final : public StoreReader {
       info.counts.skipped = query.integer(2);
       info.counts.attempts = query.integer(3);
       info.counts.visits = query.integer(4);
+      info.counts.reference_visits = query.integer(5);
+      info.counts.check_visits = query.integer(6);
+      info.counts.reopened = query.integer(7);
     }
   }
 
@@ -321,7 +333,7 @@ class SqliteStoreReader final : public StoreReader {
     const std::int32_t first = infos.front().point.index;
     const std::int32_t last = infos.back().point.index;
     Statement& items = database_->statement(
-        "SELECT point_index, target, outcome FROM item WHERE scan_id = ? AND point_index BETWEEN ? AND ?");
+        "SELECT point_index, target, outcome FROM decided_item WHERE scan_id = ? AND point_index BETWEEN ? AND ?");
     items.bind(id).bind(first).bind(last);
     while (items.next()) {
       PointInfo& info = infos[static_cast<std::size_t>(items.integer(0) - first)];
@@ -360,11 +372,15 @@ class SqliteStoreReader final : public StoreReader {
         "open_filter_wheel_counts, close_theta_i_counts, close_theta_r_counts, close_phi_r_counts, close_phi_i_counts, "
         "close_carriage_counts, close_filter_wheel_counts, counted_n, reduced_dn, u_noise_dn, u_maps_dn, mean_w, "
         "standard_error_w, samples, averages, range_w, set_to_nm FROM ("
-        "SELECT d.*, d.boottime_ns AS t, a.run_id, a.target, a.point_index, p.wavelength_nm FROM item i "
+        "SELECT d.*, d.boottime_ns AS t, a.run_id, a.target, a.point_index, p.wavelength_nm FROM (SELECT attempt_id, "
+        "round, max(round) OVER (PARTITION BY point_index, target) AS last_round FROM item WHERE scan_id = ?1 AND "
+        "outcome = 'accepted') i "
         "JOIN attempt a USING (attempt_id) JOIN reading d USING (attempt_id) "
-        "JOIN point p ON p.scan_id = a.scan_id AND p.point_index = a.point_index WHERE i.scan_id = ?1 "
-        "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, NULL, NULL, NULL FROM visit v "
-        "JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) LEFT JOIN frame_reduction USING (reading_id) "
+        "JOIN point p ON p.scan_id = a.scan_id AND p.point_index = a.point_index WHERE i.round = i.last_round "
+        "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, l.target, l.point_index, p.wavelength_nm FROM visit v "
+        "LEFT JOIN visit_level l USING (visit_id) LEFT JOIN point p ON p.scan_id = l.scan_id AND p.point_index = "
+        "l.point_index JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) LEFT JOIN frame_reduction USING "
+        "(reading_id) "
         "LEFT JOIN (SELECT reading_id AS of_reading, mean_w, "
         "standard_error_w, samples, averages, range_w, wavelength_nm AS set_to_nm FROM power_reading WHERE role = "
         "'detector') ON of_reading = reading_id WHERE used = 1 ORDER BY reading_id");

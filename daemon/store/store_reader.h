@@ -22,6 +22,9 @@ struct ScanCounts {
   std::int64_t skipped = 0;
   std::int64_t attempts = 0;  ///< failed and dropped ones included
   std::int64_t visits = 0;
+  std::int64_t reference_visits = 0;  ///< of the visits; the rest are darks
+  std::int64_t check_visits = 0;
+  std::int64_t reopened = 0;  ///< points that a drift made to be measured again
 };
 
 struct ScanInfo {
@@ -39,10 +42,11 @@ struct ScanInfo {
   UtcTime submitted{};
   UtcTime changed{};  ///< last transition
   ScanCounts counts;
-  TimeParts spent;          ///< sums over all attempts and visits
-  std::vector<Hold> holds;  ///< since: only differences within this boot mean something
-  ScanTurn turn;            ///< of its start, UTC only
-  ScanId completed_by = 0;  ///< the newest scan that was made of its missing points; 0: none
+  TimeParts spent;             ///< sums over all attempts and visits
+  double largest_drift = 0.0;  ///< relative, between two lit visits of one kind
+  std::vector<Hold> holds;     ///< since: only differences within this boot mean something
+  ScanTurn turn;               ///< of its start, UTC only
+  ScanId completed_by = 0;     ///< the newest scan that was made of its missing points; 0: none
 };
 
 /// The texts a scan was accepted with, as they were.
@@ -87,8 +91,8 @@ class StoreReader {
   [[nodiscard]] virtual Result<ScanTexts> texts(ScanId id) = 0;
   /// Points with index > `after` (-1: from the first).
   [[nodiscard]] virtual Result<std::vector<PointInfo>> points(ScanId id, std::int32_t after, int at_most) = 0;
-  /// Accepted attempts and all dark visits in time order; encoder counts become directions by the
-  /// kinematics of `stage`, each phi within half a turn of the planned one. Frames of one
+  /// Accepted attempts (of an item that was measured again the last one) and all visits in time order; encoder counts
+  /// become directions by the kinematics of `stage`, each phi within half a turn of the planned one. Frames of one
   /// attempt or visit at one exposure are one RawReading; its visit_id is 2 * attempt or 2 * visit + 1.
   [[nodiscard]] virtual Result<calibration::ScanReadings> readings(ScanId id, const drivers::StageConfig& stage) = 0;
   /// Events with number > `after`, in order; `scan` = 0: of all.

@@ -23,7 +23,7 @@ ItemKey item_from_row(const Statement& row, int first) {
 
 void read_items(Database& database, UnfinishedScan& scan) {
   Statement& query =
-      database.statement("SELECT point_index, target, outcome FROM item WHERE scan_id = ?").bind(scan.id);
+      database.statement("SELECT point_index, target, outcome FROM decided_item WHERE scan_id = ?").bind(scan.id);
   while (query.next()) {
     auto& list = query.text(2) == "accepted" ? scan.accepted : scan.skipped;
     list.push_back(item_from_row(query, 0));
@@ -34,8 +34,10 @@ void read_attempts(Database& database, UnfinishedScan& scan) {
   Statement& query = database
                          .statement(
                              "SELECT point_index, target, count(*) FROM attempt a WHERE scan_id = ? AND outcome = "
-                             "'failed' AND NOT EXISTS (SELECT 1 FROM item i WHERE i.scan_id = a.scan_id AND "
-                             "i.point_index = a.point_index AND i.target = a.target) GROUP BY 1, 2")
+                             "'failed' AND NOT EXISTS (SELECT 1 FROM decided_item i WHERE i.scan_id = a.scan_id AND "
+                             "i.point_index = a.point_index AND i.target = a.target) AND attempt_id > coalesce(("
+                             "SELECT max(attempt_id) FROM item e WHERE e.scan_id = a.scan_id AND e.point_index = "
+                             "a.point_index AND e.target = a.target), 0) GROUP BY 1, 2")
                          .bind(scan.id);
   while (query.next()) scan.attempts.emplace_back(item_from_row(query, 0), static_cast<int>(query.integer(2)));
 }
@@ -43,16 +45,56 @@ void read_attempts(Database& database, UnfinishedScan& scan) {
 void read_dark_needs(Database& database, UnfinishedScan& scan) {
   Statement& rungs = database
                          .statement(
-                             "SELECT DISTINCT exposure_ns FROM item JOIN reading USING (attempt_id) WHERE "
-                             "scan_id = ? AND used = 1 ORDER BY 1")
+                             "SELECT exposure_ns FROM item JOIN reading USING (attempt_id) WHERE "
+                             "scan_id = ?1 AND used = 1 UNION SELECT exposure_ns FROM visit_level JOIN reading USING "
+                             "(visit_id) WHERE scan_id = ?1 AND used = 1 ORDER BY 1")
                          .bind(scan.id);
   while (rungs.next()) scan.exposures_used.push_back(Duration(rungs.integer(0)));
   Statement& owed = database
                         .statement(
                             "SELECT EXISTS (SELECT 1 FROM item WHERE scan_id = ?1 AND attempt_id > coalesce("
-                            "(SELECT max(after_attempt) FROM visit WHERE scan_id = ?1 AND kind = 'dark'), 0))")
+                            "(SELECT max(after_attempt) FROM visit WHERE scan_id = ?1 AND kind = 'dark'), 0)) OR "
+                            "EXISTS (SELECT 1 FROM visit_level WHERE scan_id = ?1 AND visit_id > coalesce("
+                            "(SELECT max(visit_id) FROM visit WHERE scan_id = ?1 AND kind = 'dark'), 0))")
                         .bind(scan.id);
   while (owed.next()) scan.dark_owed = owed.integer(0) != 0;
+}
+
+LastVisit read_last_visit(Database& database, ScanId scan, VisitKind kind) {
+  LastVisit last;
+  std::int64_t after_attempt = 0;
+  Statement& visit = database
+                         .statement(
+                             "SELECT after_attempt, point_index, level, u_relative FROM visit v JOIN visit_level l "
+                             "USING (visit_id) WHERE v.scan_id = ? AND kind = ? ORDER BY visit_id DESC LIMIT 1")
+                         .bind(scan)
+                         .bind(visit_kind_name(kind));
+  while (visit.next()) {
+    after_attempt = visit.integer(0);
+    last.level = VisitLevel{.point = static_cast<std::int32_t>(visit.integer(1)),
+                            .level = visit.real(2),
+                            .u_relative = visit.real(3),
+                            .drift = std::nullopt};
+  }
+  Statement& since = database
+                         .statement(
+                             "SELECT point_index, target FROM decided_item WHERE scan_id = ? AND attempt_id > ? "
+                             "ORDER BY attempt_id")
+                         .bind(scan)
+                         .bind(after_attempt);
+  while (since.next()) last.since.push_back(item_from_row(since, 0));
+  return last;
+}
+
+void read_drift(Database& database, UnfinishedScan& scan) {
+  scan.last_reference = read_last_visit(database, scan.id, VisitKind::Reference);
+  scan.last_check = read_last_visit(database, scan.id, VisitKind::Check);
+  Statement& reopened =
+      database.statement("SELECT point_index, max(round) FROM reopening WHERE scan_id = ? GROUP BY 1").bind(scan.id);
+  while (reopened.next()) {
+    scan.reopened.emplace_back(static_cast<std::int32_t>(reopened.integer(0)), static_cast<int>(reopened.integer(1)));
+  }
+  scan.largest_drift = read_largest_drift(database, scan.id);
 }
 
 void complete(Database& database, UnfinishedScan& scan, Instant now, UtcTime utc_now) {
@@ -67,6 +109,7 @@ void complete(Database& database, UnfinishedScan& scan, Instant now, UtcTime utc
   read_items(database, scan);
   read_attempts(database, scan);
   read_dark_needs(database, scan);
+  read_drift(database, scan);
   scan.holds = read_holds(database, scan.id, now, utc_now);
   scan.spent = read_time_spent(database, scan.id);
 }
@@ -81,7 +124,11 @@ ScanPolicy policy_from_row(const Statement& row, int first) {
                     .dark_every = Duration(row.integer(first + 4)),
                     .item_retries = static_cast<int>(row.integer(first + 5)),
                     .on_item_error = enum_at<api::OnItemError>(kOnItemErrorNames, row.text(first + 6)),
-                    .on_restart = enum_at<api::OnRestart>(kOnRestartNames, row.text(first + 7))};
+                    .on_restart = enum_at<api::OnRestart>(kOnRestartNames, row.text(first + 7)),
+                    .reference_every = Duration(row.integer(first + 8)),
+                    .check_every = Duration(row.integer(first + 9)),
+                    .drift_limit = row.real(first + 10),
+                    .drift_rounds = static_cast<int>(row.integer(first + 11))};
 }
 
 std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t after, std::int64_t at_most) {
@@ -141,6 +188,14 @@ ScanTurn read_turn(Database& database, ScanId scan, Instant now, UtcTime utc_now
   return turn;
 }
 
+double read_largest_drift(Database& database, ScanId scan) {
+  double largest = 0.0;
+  Statement& query =
+      database.statement("SELECT coalesce(max(abs(drift)), 0.0) FROM visit_level WHERE scan_id = ?").bind(scan);
+  while (query.next()) largest = query.real(0);
+  return largest;
+}
+
 TimeParts read_time_spent(Database& database, ScanId scan) {
   TimeParts spent;
   Statement& query = database
@@ -162,7 +217,8 @@ std::vector<UnfinishedScan> read_unfinished(Database& database, Instant now, Utc
   Statement& query = database.statement(
       "SELECT scan_id, state, finish_asked, name, isotropic, configuration_hash, merged, target_snr, max_time_ns, "
       "exposures_ns, "
-      "block_ns, dark_every_ns, item_retries, on_item_error, on_restart FROM scan "
+      "block_ns, dark_every_ns, item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, "
+      "drift_limit, drift_rounds FROM scan "
       "WHERE state NOT IN ('done', 'finished-early', 'aborted', 'failed') ORDER BY scan_id");
   while (query.next()) {
     scans.push_back(UnfinishedScan{.id = query.integer(0),

@@ -21,8 +21,10 @@ namespace gonio::daemon {
 [[nodiscard]] ScanTurn read_turn(Database& database, ScanId scan, Instant now, UtcTime utc_now);
 /// The sum over all attempts and visits.
 [[nodiscard]] TimeParts read_time_spent(Database& database, ScanId scan);
+/// The largest relative change between two lit visits of one kind; 0 without.
+[[nodiscard]] double read_largest_drift(Database& database, ScanId scan);
 /// The policy in columns `first` and after: target_snr, max_time_ns, exposures_ns, block_ns, dark_every_ns,
-/// item_retries, on_item_error, on_restart.
+/// item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, drift_limit, drift_rounds.
 [[nodiscard]] ScanPolicy policy_from_row(const Statement& row, int first);
 
 }  // namespace gonio::daemon

@@ -146,7 +146,15 @@ void read_visits(TomlReader& root, Plan& plan) {
   constexpr double kDark = 300.0;
   plan.dark_every = seconds(kDark);
   std::optional<TomlReader> table = root.optional_table("visits");
-  if (table) plan.dark_every = seconds(table->number_or("dark_s", kDark, kWait));
+  if (!table) return;
+  plan.dark_every = seconds(table->number_or("dark_s", kDark, kWait));
+  const auto wanted = [&table](std::string_view key) {
+    return table->kind(key) == TomlKind::Absent ? Duration{} : seconds(table->number(key, kWait));
+  };
+  plan.reference_every = wanted("reference_s");
+  plan.check_every = wanted("check_s");
+  plan.drift_limit = table->number_or("drift_limit", plan.drift_limit, {.least = 1e-5, .most = 1.0});
+  plan.drift_rounds = static_cast<int>(table->integer_or("drift_rounds", plan.drift_rounds, 0, 10));
 }
 
 void read_order(TomlReader& root, Plan& plan) {

@@ -33,8 +33,12 @@ struct Plan {
   std::vector<Duration> exposures;  ///< [reading] exposure_s, ascending: one is fixed, several bracket; empty: chosen
   std::string reference_standard;   ///< serial number
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
-  Duration block{};       ///< sample items and their reference partners lie within this time
-  Duration dark_every{};  ///< visits
+  Duration block{};            ///< sample items and their reference partners lie within this time
+  Duration dark_every{};       ///< visits
+  Duration reference_every{};  ///< visits of the standard at one geometry; zero: none
+  Duration check_every{};      ///< of the sample likewise
+  double drift_limit = 0.005;  ///< relative, between two visits: beyond it the points between are measured again
+  int drift_rounds = 2;        ///< how often at most
   OrderStrategy order = OrderStrategy::Fastest;
   std::uint64_t order_seed = 1;
   int item_retries = 2;  ///< on_error.item = "retry N, then skip|hold|fail"

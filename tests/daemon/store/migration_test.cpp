@@ -100,5 +100,29 @@ TEST_F(OldStore, OfVersion1HasScansOfOrdinaryTurn) {
   EXPECT_EQ(info->completed_by, 0);
 }
 
+TEST_F(OldStore, OfVersion1KeepsItsDecisionsAsTheFirstRound) {
+  write("version_1.sql");
+  const auto items = [this](const std::string& what) {
+    SQLite::Database file(path_, SQLite::OPEN_READONLY);
+    return file
+        .execAndGet("SELECT group_concat(point_index || target || outcome || coalesce(attempt_id, '')) FROM " + what)
+        .getString();
+  };
+  SQLite::Database(path_, SQLite::OPEN_READWRITE)
+      .exec("INSERT INTO item VALUES (1, 0, 'sample', 'skipped', NULL, 'uid:1', 'asked')");
+  const std::string before = items("item");
+  ASSERT_EQ(before, "0sampleskipped");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  EXPECT_EQ(items("decided_item WHERE round = 1"), before);
+  const auto unfinished = (*writer)->unfinished();
+  ASSERT_TRUE(unfinished) << describe(unfinished.error());
+  ASSERT_EQ(unfinished->size(), 1U);
+  EXPECT_EQ(unfinished->front().skipped, (std::vector<ItemKey>{{0, calibration::Target::Sample}}));
+  EXPECT_EQ(unfinished->front().policy.reference_every, Duration{});
+  EXPECT_TRUE(unfinished->front().reopened.empty());
+}
+
 }  // namespace
 }  // namespace gonio::daemon

@@ -74,6 +74,23 @@ TEST(Plan, IsReadWhole) {
   EXPECT_EQ(plan->on_restart, OnRestart::Hold);
 }
 
+TEST(Plan, VisitsOfStandardAndSampleAreMadeOnlyWhereItAsksForThem) {
+  const Result<Plan> without = parse_plan(kWheat, "wheat.toml");
+  const Result<Plan> with_them = parse_plan(
+      with("dark_s = 300", "dark_s = 300\nreference_s = 600\ncheck_s = 900\ndrift_limit = 0.01\ndrift_rounds = 3"),
+      "p");
+
+  ASSERT_TRUE(without.has_value()) << describe(without.error());
+  ASSERT_TRUE(with_them.has_value()) << describe(with_them.error());
+  EXPECT_EQ(without->reference_every, Duration{});
+  EXPECT_EQ(without->check_every, Duration{});
+  EXPECT_EQ(with_them->reference_every, std::chrono::seconds(600));
+  EXPECT_EQ(with_them->check_every, std::chrono::seconds(900));
+  EXPECT_EQ(with_them->drift_limit, 0.01);
+  EXPECT_EQ(with_them->drift_rounds, 3);
+  EXPECT_EQ(error_of(with("dark_s = 300", "drift_limit = 0")).code, ErrorCode::InvalidInput);
+}
+
 TEST(Plan, StepsReachTheirLastValueWithoutCreep) {
   const Result<Plan> plan = parse_plan(with("{from = 0, to = 75, step = 5}", "{from = 0, to = 1, step = 0.1}"), "p");
 
