@@ -103,18 +103,19 @@ Result<StepTime> step_time(const Instrument& instrument, const stage::PerAxis<do
   return step;
 }
 
-Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned) {
+Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points,
+                           std::span<const std::int32_t> order) {
   Walk walk(plan, instrument);
   const Duration pass = plan.block / 2;  // there and back: partners lie within the whole block
-  for (std::size_t first = 0; first < planned.order.size();) {
+  for (std::size_t first = 0; first < order.size();) {
     const Duration started = walk.time().total();
     std::size_t end = first;
-    while (end < planned.order.size() && (end == first || walk.time().total() - started < pass)) {
-      GONIO_TRY(walk.visit(planned.points[static_cast<std::size_t>(planned.order[end])], instrument.carriage.sample));
+    while (end < order.size() && (end == first || walk.time().total() - started < pass)) {
+      GONIO_TRY(walk.visit(points[static_cast<std::size_t>(order[end])], instrument.carriage.sample));
       ++end;
     }
     for (std::size_t k = end; k-- > first;) {
-      GONIO_TRY(walk.visit(planned.points[static_cast<std::size_t>(planned.order[k])], instrument.carriage.reference));
+      GONIO_TRY(walk.visit(points[static_cast<std::size_t>(order[k])], instrument.carriage.reference));
     }
     first = end;
   }

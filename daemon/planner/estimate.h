@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "base/result.h"
 #include "daemon/config/instrument.h"
 #include "daemon/planner/planned_scan.h"
@@ -8,11 +10,11 @@
 
 namespace gonio::daemon {
 
-/// The time of a planned scan, dark visits included, by the instrument's own speeds: `planned.points` and
-/// `planned.order` are read. Every direction must be within the axes' limits (asserted). Detours and turning points
-/// count. Errors: Blocked (a point that the arms cannot come to from the one before, with the place on the path).
+/// The time of a scan of `points` (by index) in this order, dark visits included, by the instrument's own speeds. Every
+/// direction must be within the axes' limits (asserted). Detours and turning points count. Errors: Blocked (a point
+/// that the arms cannot come to from the one before, with the place on the path).
 [[nodiscard]] Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument,
-                                         const PlannedScan& planned);
+                                         std::span<const ScanPoint> points, std::span<const std::int32_t> order);
 
 /// How long one axis needs from rest to rest; without settling.
 [[nodiscard]] Duration travel_time(const drivers::AxisConfig& axis, double way);

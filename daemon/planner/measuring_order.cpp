@@ -1,127 +1,181 @@
 #include "daemon/planner/measuring_order.h"
 
 #include <algorithm>
-#include <limits>
+#include <cassert>
+#include <map>
 #include <numeric>
 #include <utility>
 
+#include "daemon/planner/chance.h"
 #include "daemon/planner/estimate.h"
+#include "daemon/planner/neighbours.h"
+#include "daemon/planner/planner.h"
+#include "daemon/planner/snake.h"
+#include "daemon/planner/tour_search.h"
 
 namespace gonio::daemon {
 
 namespace {
 
-using stage::Axis;
-using Nesting = std::array<std::size_t, kPlanListCount>;  // lists, slowest first
+// A search takes seconds for so many points; beyond, the boustrophedon stands.
+constexpr std::size_t kMostSearched = 200'000;
+constexpr std::size_t kNeighbours = 10;
+// So many kicks a place bring a thousand places to a few per mille of the bound in half a second; beyond, more of them
+// gain little and a check of a plan would wait.
+constexpr std::int64_t kKicksPerPlace = 20;
+constexpr std::int64_t kMostKicks = 50'000;
+// A way that depends on where it comes from changes with the order; after so many rounds the best is taken.
+constexpr int kRounds = 2;
 
-// The positions that a list asks of its axis, in the order of the list.
-std::vector<double> positions_of(const api::Plan& plan, const Instrument& instrument, std::size_t list) {
-  std::vector<double> positions;
-  const auto add_angles = [&positions](const std::vector<Angle>& angles) {
-    for (const Angle a : angles) positions.push_back(in_degrees(a));
-  };
-  if (list == 0) add_angles(plan.theta_i);
-  if (list == 1) add_angles(plan.phi_i);
-  if (list == 2) add_angles(plan.theta_r);
-  if (list == 3) add_angles(plan.phi_r);
-  if (list == 4) {
-    for (const Wavelength w : plan.wavelengths) {
-      const Filter* filter = filter_for(instrument, w);
-      positions.push_back(filter == nullptr ? 0.0 : static_cast<double>(filter->slot));
-    }
+std::vector<std::int32_t> as_written(std::span<const ScanPoint> points) {
+  std::vector<std::int32_t> order;
+  for (const ScanPoint& point : points) {
+    if (!point.blocked) order.push_back(point.index);
   }
-  return positions;
-}
-
-constexpr std::array<Axis, kPlanListCount> kAxisOfList{Axis::ThetaI, Axis::PhiI, Axis::ThetaR, Axis::PhiR,
-                                                       Axis::FilterWheel};
-
-// The mean time of one step along a list, from a value to the next.
-double mean_step_s(const api::Plan& plan, const Instrument& instrument, std::size_t list) {
-  const std::vector<double> positions = positions_of(plan, instrument, list);
-  if (positions.size() < 2) return 0.0;
-  const auto& axis = instrument.stage.axis(kAxisOfList[list]);
-  double sum = 0.0;
-  for (std::size_t k = 1; k < positions.size(); ++k) {
-    sum += in_seconds(travel_time(axis, positions[k] - positions[k - 1]) + axis.settle);
-  }
-  return sum / static_cast<double>(positions.size() - 1);
-}
-
-// Walked to and fro, each step of the whole walk moves along one list only: prod(n of the slower lists) * (n - 1) steps
-// each.
-double walk_time_s(const Nesting& nesting, const GridPlace& sizes, const std::array<double, kPlanListCount>& step_s) {
-  double passes = 1.0;
-  double total = 0.0;
-  for (const std::size_t list : nesting) {
-    total += passes * (sizes[list] - 1.0) * step_s[list];
-    passes *= sizes[list];
-  }
-  return total;
-}
-
-Nesting cheapest_nesting(const api::Plan& plan, const Instrument& instrument, const GridPlace& sizes) {
-  std::array<double, kPlanListCount> step_s{};
-  for (std::size_t list = 0; list < kPlanListCount; ++list) step_s[list] = mean_step_s(plan, instrument, list);
-  Nesting nesting{0, 1, 2, 3, 4};
-  Nesting best = nesting;
-  double best_s = std::numeric_limits<double>::infinity();
-  do {
-    const double t = walk_time_s(nesting, sizes, step_s);
-    if (t < best_s) {
-      best_s = t;
-      best = nesting;
-    }
-  } while (std::next_permutation(nesting.begin(), nesting.end()));
-  return best;
-}
-
-// The step of the to-and-fro walk at which a place is passed.
-std::uint64_t step_of(const GridPlace& place, const GridPlace& sizes, const Nesting& nesting) {
-  std::uint64_t step = 0;
-  for (const std::size_t list : nesting) {
-    const bool backwards = step % 2 == 1;
-    const std::uint64_t along = backwards ? sizes[list] - 1 - place[list] : place[list];
-    step = step * sizes[list] + along;
-  }
-  return step;
-}
-
-// SplitMix64 (Steele, Lea, Flood 2014): the same on every platform, unlike std::shuffle.
-std::uint64_t next_random(std::uint64_t& state) {
-  state += 0x9E3779B97F4A7C15ULL;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31U);
+  return order;
 }
 
 void shuffle(std::vector<std::int32_t>& order, std::uint64_t seed) {
-  for (std::size_t k = order.size(); k > 1; --k) {
-    // The bias of the remainder is below 2^-40 for the 10^7 points that a plan may have.
-    std::swap(order[k - 1], order[static_cast<std::size_t>(next_random(seed) % k)]);
+  Chance chance(seed);
+  for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[chance.below(k)]);
+}
+
+Place place_of(const ScanPoint& point, const Instrument& instrument, const Place& standing) {
+  const auto target = axis_targets(point.geometry, point.wavelength, instrument, standing);
+  assert(target);  // the planner has checked every direction
+  Place place = standing;
+  for (std::size_t a = 0; a < place.size(); ++a) place[a] = (*target)[a].value_or(place[a]);
+  return place;
+}
+
+// Home, then every point of `order` as it is reached from home.
+std::vector<Place> places_from_home(const Instrument& instrument, std::span<const ScanPoint> points,
+                                    std::span<const std::int32_t> order) {
+  std::vector<Place> places{home_position(instrument)};
+  for (const std::int32_t index : order) {
+    places.push_back(place_of(points[static_cast<std::size_t>(index)], instrument, places.front()));
+  }
+  return places;
+}
+
+// Points at which the axes stand alike are one place: they are measured one after the other.
+class Sites {
+ public:
+  Sites(std::span<const Place> places, std::span<const std::int32_t> order) {
+    places_.push_back(places.front());
+    points_.emplace_back();
+    std::map<Place, std::size_t> known;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const auto [at, is_new] = known.try_emplace(places[k + 1], places_.size());
+      if (is_new) {
+        places_.push_back(places[k + 1]);
+        points_.emplace_back();
+      }
+      points_[at->second].push_back(order[k]);
+    }
+  }
+
+  [[nodiscard]] std::span<const Place> places() const { return places_; }
+  [[nodiscard]] std::vector<std::int32_t> order_of(std::span<const std::int32_t> walk) const {
+    std::vector<std::int32_t> order;
+    for (const std::int32_t site : walk) {
+      const auto& points = points_[static_cast<std::size_t>(site)];
+      order.insert(order.end(), points.begin(), points.end());
+    }
+    return order;
+  }
+
+ private:
+  std::vector<Place> places_;  // home first
+  std::vector<std::vector<std::int32_t>> points_;
+};
+
+std::vector<std::int32_t> searched_walk(std::span<const Place> places, const StepPrice& price,
+                                        std::span<const std::int32_t> snake) {
+  const Neighbours neighbours(places, price, kNeighbours);
+  auto from_snake = shorten(places, price, neighbours, snake, 0);
+  auto from_greedy = shorten(places, price, neighbours, greedy_walk(places, neighbours), 0);
+  const bool is_snake_best = walk_s(places, from_snake, price) <= walk_s(places, from_greedy, price);
+  const std::int64_t kicks = std::min(kMostKicks, kKicksPerPlace * std::ssize(snake));
+  return shorten(places, price, neighbours, is_snake_best ? from_snake : from_greedy, kicks);
+}
+
+class Contest {
+ public:
+  Contest(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points)
+      : plan_(plan), instrument_(instrument), points_(points) {}
+
+  void enter(std::vector<std::int32_t> order) {
+    const auto time = estimate(plan_, instrument_, points_, order);
+    if (!time) {
+      if (!best_) best_ = failure(time.error());
+      return;
+    }
+    if (!best_ || time->total() < best_->time.total()) best_ = MeasuringOrder{std::move(order), *time};
+  }
+  [[nodiscard]] Result<MeasuringOrder> best() && { return std::move(best_); }
+  [[nodiscard]] bool has_one() const { return best_.has_value(); }
+
+ private:
+  const api::Plan& plan_;
+  const Instrument& instrument_;
+  std::span<const ScanPoint> points_;
+  Result<MeasuringOrder> best_ = failure(Error{});
+};
+
+// The ways of some stages depend on where they come from: priced again with the ways that the walk found.
+void enter_searched(Contest& contest, const Instrument& instrument, std::span<const ScanPoint> points,
+                    std::vector<std::int32_t> order, std::vector<Place> places) {
+  for (int round = 0; round < kRounds; ++round) {
+    const Sites sites(places, order);
+    const StepPrice price(instrument, sites.places());
+    const auto walk = searched_walk(sites.places(), price, best_snake(sites.places(), price));
+    std::vector<std::int32_t> found = sites.order_of(walk);
+    std::vector<Place> walked = places_along(instrument, points, found);
+    contest.enter(found);
+    std::map<std::int32_t, std::size_t> was;
+    bool is_same = true;
+    for (std::size_t k = 0; k < order.size(); ++k) was[order[k]] = k + 1;
+    for (std::size_t k = 0; k < found.size(); ++k) is_same = is_same && walked[k + 1] == places[was[found[k]]];
+    if (is_same) return;
+    order = std::move(found);
+    places = std::move(walked);
   }
 }
 
 }  // namespace
 
-std::vector<std::int32_t> measuring_order(const api::Plan& plan, const Instrument& instrument,
-                                          const std::vector<ScanPoint>& points, const std::vector<GridPlace>& places,
-                                          const GridPlace& sizes) {
-  std::vector<std::int32_t> order;
-  for (const ScanPoint& point : points) {
-    if (!point.blocked) order.push_back(point.index);
+std::vector<Place> places_along(const Instrument& instrument, std::span<const ScanPoint> points,
+                                std::span<const std::int32_t> order) {
+  std::vector<Place> places{home_position(instrument)};
+  for (const std::int32_t index : order) {
+    places.push_back(place_of(points[static_cast<std::size_t>(index)], instrument, places.back()));
   }
-  if (plan.order == api::OrderStrategy::Random) shuffle(order, plan.order_seed);
-  if (plan.order != api::OrderStrategy::Fastest) return order;
+  return places;
+}
 
-  const Nesting nesting = cheapest_nesting(plan, instrument, sizes);
-  std::vector<std::uint64_t> steps(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) steps[k] = step_of(places[k], sizes, nesting);
-  std::sort(order.begin(), order.end(), [&steps](std::int32_t a, std::int32_t b) {
-    return steps[static_cast<std::size_t>(a)] < steps[static_cast<std::size_t>(b)];
-  });
-  return order;
+std::vector<std::int32_t> snaked_order(const Instrument& instrument, std::span<const ScanPoint> points) {
+  const std::vector<std::int32_t> written = as_written(points);
+  const Sites sites(places_from_home(instrument, points, written), written);
+  return sites.order_of(best_snake(sites.places(), StepPrice(instrument, sites.places())));
+}
+
+Result<MeasuringOrder> measuring_order(const api::Plan& plan, const Instrument& instrument,
+                                       std::span<const ScanPoint> points) {
+  std::vector<std::int32_t> written = as_written(points);
+  Contest contest(plan, instrument, points);
+  if (plan.order == api::OrderStrategy::Random) shuffle(written, plan.order_seed);
+  if (plan.order != api::OrderStrategy::Fastest) {
+    contest.enter(std::move(written));
+    return std::move(contest).best();
+  }
+  contest.enter(snaked_order(instrument, points));
+  if (written.size() <= kMostSearched) {
+    auto places = places_from_home(instrument, points, written);
+    enter_searched(contest, instrument, points, written, std::move(places));
+  }
+  if (!contest.has_one()) contest.enter(std::move(written));
+  return std::move(contest).best();
 }
 
 }  // namespace gonio::daemon

@@ -1,23 +1,35 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "base/result.h"
 #include "daemon/config/instrument.h"
 #include "daemon/planner/planned_scan.h"
+#include "daemon/planner/step_price.h"
 #include "protocol/api/plan.h"
 
 namespace gonio::daemon {
 
-/// The lists of a product plan, as places in a grid: theta_i, phi_i, theta_r, phi_r, wavelength.
-inline constexpr std::size_t kPlanListCount = 5;
-using GridPlace = std::array<std::uint32_t, kPlanListCount>;
+/// The indices of the points that are not blocked, in the order of measurement, and what it takes.
+struct MeasuringOrder {
+  std::vector<std::int32_t> order;
+  TimeParts time;
+};
 
-/// The indices of the points that are not blocked, in the order of measurement. `places[index]` is a point's place in
-/// the grid of `sizes`. Deterministic, `Random` by the plan's seed.
-[[nodiscard]] std::vector<std::int32_t> measuring_order(const api::Plan& plan, const Instrument& instrument,
-                                                        const std::vector<ScanPoint>& points,
-                                                        const std::vector<GridPlace>& places, const GridPlace& sizes);
+/// The order by the plan's strategy. Fastest: of a searched order and the best boustrophedon the one that the estimate
+/// finds sooner; so never slower than the boustrophedon. Random: by the plan's seed. Deterministic. Errors: Blocked (no
+/// order was found in which the arms can come to each point from the one before; the place on the path).
+[[nodiscard]] Result<MeasuringOrder> measuring_order(const api::Plan& plan, const Instrument& instrument,
+                                                     std::span<const ScanPoint> points);
+
+/// The best boustrophedon alone: what others are compared with.
+[[nodiscard]] std::vector<std::int32_t> snaked_order(const Instrument& instrument, std::span<const ScanPoint> points);
+
+/// Where the axes stand when the points of `order` are walked from home, home first; each by `axis_targets` from the
+/// one before. Carriage: at home. Every direction must be within the axes' limits (asserted).
+[[nodiscard]] std::vector<Place> places_along(const Instrument& instrument, std::span<const ScanPoint> points,
+                                              std::span<const std::int32_t> order);
 
 }  // namespace gonio::daemon

@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cmath>
 #include <utility>
 
-#include "daemon/planner/estimate.h"
 #include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/measuring_order.h"
 #include "drivers/motion/route.h"
@@ -35,6 +35,10 @@ std::vector<std::uint32_t> first_of_same(const std::vector<T>& values, Same same
   }
   return first;
 }
+
+// The lists of a product plan, as places in a grid: theta_i, phi_i, theta_r, phi_r, wavelength.
+constexpr std::size_t kPlanListCount = 5;
+using GridPlace = std::array<std::uint32_t, kPlanListCount>;
 
 // Walks the product of the lists, theta_i slowest, wavelength fastest.
 class Expansion {
@@ -111,7 +115,6 @@ class Expansion {
     GONIO_TRY(check_approach(*target, point.geometry));
     point.blocked = is_blocked(point.geometry, instrument_);
     planned_.points.push_back(point);
-    places_.push_back(place);
     return {};
   }
 
@@ -156,15 +159,15 @@ class Expansion {
     }
     planned_.planner_version = kPlannerVersion;
     planned_.items = 2 * (count - planned_.blocked);
-    planned_.order = measuring_order(plan_, instrument_, planned_.points, places_, sizes_);
+    auto ordered = measuring_order(plan_, instrument_, planned_.points);
+    if (!ordered) return failure(ordered.error());
+    planned_.order = std::move(ordered->order);
+    planned_.estimate = ordered->time;
     std::int32_t rank = 0;
     for (const std::int32_t index : planned_.order) planned_.points[static_cast<std::size_t>(index)].rank = rank++;
     for (ScanPoint& point : planned_.points) {
       if (point.blocked) point.rank = rank++;
     }
-    const auto time = estimate(plan_, instrument_, planned_);
-    if (!time) return failure(time.error());
-    planned_.estimate = *time;
     return std::move(planned_);
   }
 
@@ -174,7 +177,6 @@ class Expansion {
   std::array<std::vector<std::uint32_t>, kPlanListCount> first_;
   GridPlace sizes_{};
   PlannedScan planned_;
-  std::vector<GridPlace> places_;
 };
 
 }  // namespace

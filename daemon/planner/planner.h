@@ -9,7 +9,7 @@
 namespace gonio::daemon {
 
 /// Grows whenever the same plan and instrument could give other points or another order.
-inline constexpr int kPlannerVersion = 1;
+inline constexpr int kPlannerVersion = 2;
 
 /// The points of a plan on an instrument, in the order of measurement: a pure function, for the dry run and for the
 /// run. Errors: OutOfLimits (axis, value, limit, the plan's field), AllPointsBlocked, Blocked (a point that

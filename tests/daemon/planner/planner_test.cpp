@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "daemon/planner/measuring_order.h"
 #include "tests/daemon/support/bench_instrument.h"
 
 namespace gonio::daemon {
@@ -233,13 +234,15 @@ TEST(Planner, FastestIsNoSlowerThanAsWrittenAndVisitsTheSamePoints) {
   EXPECT_TRUE(std::is_sorted(written->order.begin(), written->order.end()));
 }
 
-TEST(Planner, FastestMovesOneAxisToANeighbourAtEachStep) {
+TEST(Planner, ABoustrophedonMovesOneAxisToANeighbourAtEachStep) {
   const auto planned = expand(bench_plan({10, 30}, {20, 40, 60}, {90, 120, 150}), bench_instrument());
 
   ASSERT_TRUE(planned);
-  for (std::size_t k = 1; k < planned->order.size(); ++k) {
-    const Geometry& a = planned->points[static_cast<std::size_t>(planned->order[k - 1])].geometry;
-    const Geometry& b = planned->points[static_cast<std::size_t>(planned->order[k])].geometry;
+  const auto order = snaked_order(bench_instrument(), planned->points);
+  ASSERT_EQ(order.size(), 18U);
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const Geometry& a = planned->points[static_cast<std::size_t>(order[k - 1])].geometry;
+    const Geometry& b = planned->points[static_cast<std::size_t>(order[k])].geometry;
     const int changed = (a.theta_i != b.theta_i) + (a.theta_r != b.theta_r) + (a.phi_r != b.phi_r);
     EXPECT_EQ(changed, 1) << "step " << k;
   }
