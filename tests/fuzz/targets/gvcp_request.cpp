@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 
 #include "sim/wires/gige_camera_server.h"
 #include "sim/wires/sockets.h"
@@ -46,8 +47,7 @@ class Camera {
                                      static_cast<std::uint8_t>(id)});
     for (;;) {
       Datagram in{};
-      pollfd watched{socket_.get(), POLLIN, 0};
-      hold(::poll(&watched, 1, kPatienceMs) == 1, "the camera still answers");
+      hold(answer_comes(), "the camera still answers");
       const ssize_t n = ::recv(socket_.get(), in.data(), in.size(), 0);
       if (n < 0) continue;
       const Bytes answer = Bytes(in).first(static_cast<std::size_t>(n));
@@ -62,6 +62,14 @@ class Camera {
   }
 
  private:
+  // libFuzzer's own alarm interrupts a wait.
+  bool answer_comes() {
+    pollfd watched{socket_.get(), POLLIN, 0};
+    int ready = -1;
+    do ready = ::poll(&watched, 1, kPatienceMs);
+    while (ready < 0 && errno == EINTR);
+    return ready == 1;
+  }
   // GigE Vision 2.0, section 15: status, command, length, id, then as many bytes as the length says.
   static void hold_acknowledge(Bytes answer) {
     hold(answer.size() >= 8, "an acknowledge has a header");
