@@ -32,6 +32,11 @@ std::string split_text(const api::TimeSplit& split) {
                      split.move_s, split.settle_s, split.expose_s, split.read_s, split.idle_s);
 }
 
+std::string idle_text(const api::IdleSplit& idle) {
+  return fmt::format("commit {:.4f}, wire {:.4f}, device {:.4f}, hold {:.4f}, planning {:.4f}", idle.commit_s,
+                     idle.wire_s, idle.device_s, idle.hold_s, idle.planning_s);
+}
+
 std::string error_text(const std::optional<Error>& error) {
   return error ? describe(*error) : std::string();
 }
@@ -147,6 +152,7 @@ Table view(const api::ScanReport& scan) {
       .add("attempts", std::to_string(scan.attempts))
       .add("visits", std::to_string(scan.visits))
       .add("a_point", split_text(scan.seconds_a_point))
+      .add("idle_of_it_s", idle_text(scan.seconds_a_point.idle_by))
       .add("to_go", scan.remaining_s ? duration_text(*scan.remaining_s) : "")
       .add("brdf_values", scan.brdf_values ? std::to_string(*scan.brdf_values) : "")
       .add("median_U", percent_text(scan.median_relative_u))

@@ -4,7 +4,17 @@ namespace gonio::daemon {
 namespace {
 
 api::TimeSplit divided(const api::TimeSplit& split, double n) {
-  return {split.move_s / n, split.settle_s / n, split.expose_s / n, split.read_s / n, split.idle_s / n};
+  const api::IdleSplit& idle = split.idle_by;
+  return {.move_s = split.move_s / n,
+          .settle_s = split.settle_s / n,
+          .expose_s = split.expose_s / n,
+          .read_s = split.read_s / n,
+          .idle_s = split.idle_s / n,
+          .idle_by = {.commit_s = idle.commit_s / n,
+                      .wire_s = idle.wire_s / n,
+                      .device_s = idle.device_s / n,
+                      .hold_s = idle.hold_s / n,
+                      .planning_s = idle.planning_s / n}};
 }
 
 // A point is measured when sample and reference are: two items.
@@ -36,7 +46,12 @@ api::TimeSplit time_split(const TimeParts& parts) {
           .settle_s = in_seconds(parts.settle),
           .expose_s = in_seconds(parts.expose),
           .read_s = in_seconds(parts.read),
-          .idle_s = in_seconds(parts.idle)};
+          .idle_s = in_seconds(parts.idle.total()),
+          .idle_by = {.commit_s = in_seconds(parts.idle.commit),
+                      .wire_s = in_seconds(parts.idle.wire),
+                      .device_s = in_seconds(parts.idle.device),
+                      .hold_s = in_seconds(parts.idle.hold),
+                      .planning_s = in_seconds(parts.idle.planning)}};
 }
 
 api::ScanReport scan_report(const ScanInfo& info, Instant now) {

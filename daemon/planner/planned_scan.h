@@ -20,14 +20,24 @@ struct ScanPoint {
   bool blocked = false;  ///< by the shadow of the detector's head: recorded, never visited, never filled in
 };
 
+/// Time in which nothing moved, settled, took light or gave a frame, by what it waited for.
+struct IdleTime {
+  Duration commit{};    ///< the store: an exposure waits for the commit of the item before
+  Duration wire{};      ///< what a move or an exposure took beyond its own: exchanges, looks that came late
+  Duration device{};    ///< what was not asked for by the plan: homing, resets, moves back, tries that failed
+  Duration hold{};      ///< holds
+  Duration planning{};  ///< the daemon's own, between answers and requests; of old scans, what nobody told apart
+  [[nodiscard]] Duration total() const { return commit + wire + device + hold + planning; }
+};
+
 /// Where the time of a scan goes, by the instrument's own numbers.
 struct TimeParts {
   Duration move{};
   Duration settle{};
   Duration expose{};
   Duration read{};
-  Duration idle{};
-  [[nodiscard]] Duration total() const { return move + settle + expose + read + idle; }
+  IdleTime idle;
+  [[nodiscard]] Duration total() const { return move + settle + expose + read + idle.total(); }
 };
 
 /// What a dry run says, and what the run then does.

@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "daemon/planner/estimate.h"
 #include "daemon/sequencer/exposure_choice.h"
 #include "daemon/sequencer/measurement.h"
 #include "daemon/sequencer/messages.h"
 #include "daemon/sequencer/scan_items.h"
 #include "daemon/sequencer/time_estimate.h"
+#include "daemon/sequencer/time_ledger.h"
 #include "daemon/store/records.h"
 
 namespace gonio::daemon {
@@ -29,7 +31,10 @@ struct Job {
   Phase phase = Phase::ToMove;
   Instant started{};
   Instant asked{};                ///< when the call now open was made
-  Duration settle{};              ///< of the axes that the move in hand moves
+  StepTime model;                 ///< of the move in hand, by the axes' own speeds
+  bool awaits_commit = false;     ///< in place, and the item before is not committed yet
+  bool is_going_back = false;     ///< the arms had left for the next item too soon
+  std::optional<Error> error;     ///< of a move that is ahead of its turn
   std::uint32_t gate_before = 0;  ///< the stage's count before the exposure in hand
   TimeParts time;
   std::optional<drivers::StageState> gate;    ///< after the exposure in hand, once the stage has answered
@@ -112,6 +117,9 @@ struct ActiveScan {
   bool is_position_in_doubt = false;  ///< an axis was not where it was left or sent: home before the next move
   std::int64_t uncommitted = 0;       ///< items accepted here whose commit has not returned
   std::optional<Job> job;
+  std::optional<Job> ahead;  ///< the next item, while the frame of the one in hand is still read: only its move
+  TimeLedger ledger;         ///< while it is active
+  IdleTime between;          ///< since the last job: goes into the next one's time
   DurationStatistics sample_time;
   DurationStatistics reference_time;
   DurationStatistics dark_time;

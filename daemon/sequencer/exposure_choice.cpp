@@ -14,13 +14,17 @@ namespace {
 // The mean in the aperture stays below this share of full scale: the brightest pixel and the next geometry lie above
 // it.
 constexpr double kFill = 0.5;
+constexpr double kSureFill = 0.7;  // whatever the pixels' unevenness about their mean
+constexpr double kChangeAtFirst = 0.1;
+constexpr double kChangeGain = 0.1;  // of an exponential mean
 constexpr Duration kFrameTimeAtFirst = std::chrono::milliseconds(5);
 constexpr double kFrameTimeGain = 0.1;  // of an exponential mean: ten frames or so
 
 }  // namespace
 
 ExposureChooser::ExposureChooser(const Instrument& instrument, const ScanPolicy& policy)
-    : target_snr_(policy.target_snr),
+    : mean_change_(kChangeAtFirst),
+      target_snr_(policy.target_snr),
       max_time_(policy.max_time),
       frames_at_most_(instrument.detector.frames_at_most),
       electrons_per_dn_(instrument.model.detector.electrons_per_dn /
@@ -102,7 +106,24 @@ ExposurePlan ExposureChooser::first_plan(calibration::Target target, int filter)
 }
 
 void ExposureChooser::remember(calibration::Target target, int filter, const Signal& signal) {
+  const auto before = last_signal(target, filter);
   last_[{target, filter}] = signal;
+  if (!before || before->rate_dn_per_s <= 0.0 || signal.rate_dn_per_s <= 0.0) return;
+  const double change = std::abs(std::log(signal.rate_dn_per_s / before->rate_dn_per_s));
+  mean_change_ += kChangeGain * (change - mean_change_);
+}
+
+std::optional<ExposureChooser::Signal> ExposureChooser::last_signal(calibration::Target target, int filter) const {
+  const auto known = last_.find({target, filter});
+  return known == last_.end() ? std::nullopt : std::optional(known->second);
+}
+
+double ExposureChooser::usual_change() const {
+  return std::min(2.0 * mean_change_, 0.9);
+}
+
+bool ExposureChooser::is_clear_of_full_scale(std::size_t rung, const Signal& signal) const {
+  return dark_dn_[rung] + signal.rate_dn_per_s * weights_[rung] < kSureFill * full_scale_dn_;
 }
 
 void ExposureChooser::learn_frame_time(Duration beyond_exposure) {

@@ -57,6 +57,11 @@ class ExposureChooser {
   /// For the first frame of an item: by the last signal of this target and filter, else a probe in the middle of the
   /// ladder.
   [[nodiscard]] ExposurePlan first_plan(calibration::Target target, int filter) const;
+  [[nodiscard]] std::optional<Signal> last_signal(calibration::Target target, int filter) const;
+  /// By how much, relative, signals change from item to item: twice the running mean, below 1.
+  [[nodiscard]] double usual_change() const;
+  /// Whether a signal will surely not saturate on a rung.
+  [[nodiscard]] bool is_clear_of_full_scale(std::size_t rung, const Signal& signal) const;
   void remember(calibration::Target target, int filter, const Signal& signal);
   void learn_dark(std::size_t rung, double mean_dn) { dark_dn_[rung] = mean_dn; }
   /// The dark level of a rung; 0 before it was measured.
@@ -73,6 +78,7 @@ class ExposureChooser {
   std::vector<std::size_t> stated_;
   std::vector<double> dark_dn_;
   std::map<std::pair<calibration::Target, int>, Signal> last_;
+  double mean_change_;  ///< of signals, from item to item: |ln(ratio)|
   double target_snr_;
   Duration max_time_;
   int frames_at_most_;

@@ -118,6 +118,24 @@ Measurement::Verdict Measurement::repeat_longest(std::uint32_t pixels, ExposureC
   return Verdict::Done;
 }
 
+std::optional<ExposureChooser::Signal> Measurement::expected_signal(const ExposureChooser& chooser) const {
+  if (on_rung_ == 0) return chooser.last_signal(target_, filter_);
+  const std::uint32_t pixels = readings_.back().region.n;
+  return ExposureChooser::Signal{(mean_dn() - chooser.dark_dn(rung_)) / chooser.weight(rung_), pixels};
+}
+
+bool Measurement::expects_no_more(const ExposureChooser& chooser) const {
+  if (is_dark_) return false;
+  const bool is_on_last = stated_.empty() || (rung_ == stated_.back() && tried_ + 1 >= stated_.size());
+  const auto signal = expected_signal(chooser);
+  if (!is_on_last || !signal) return false;
+  // Of frames before it the scatter is known to be small; from one item to another the signal changes.
+  const double change = on_rung_ == 0 ? chooser.usual_change() : 0.0;
+  const ExposureChooser::Signal darker{signal->rate_dn_per_s * (1.0 - change), signal->pixels};
+  const ExposureChooser::Signal brighter{signal->rate_dn_per_s * (1.0 + change), signal->pixels};
+  return on_rung_ + 1 >= chooser.frames_needed(rung_, darker) && chooser.is_clear_of_full_scale(rung_, brighter);
+}
+
 std::vector<std::size_t> Measurement::used_rungs() const {
   std::set<std::size_t> rungs;
   for (std::size_t k = 0; k < readings_.size(); ++k) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "daemon/sequencer/exposure_choice.h"
@@ -24,6 +25,9 @@ class Measurement {
   /// The rung of the next frame.
   [[nodiscard]] std::size_t rung() const { return rung_; }
   [[nodiscard]] Verdict add(ReadingRecord reading, ExposureChooser& chooser);
+  /// Whether the frame under way will likely be the last one: by the frames before it, or by what was measured last at
+  /// this target and filter and how much that changes from item to item.
+  [[nodiscard]] bool expects_no_more(const ExposureChooser& chooser) const;
   /// All frames so far, probes and saturated ones among them (not `used`).
   [[nodiscard]] const std::vector<ReadingRecord>& readings() const { return readings_; }
   /// The rungs of those that count, each once, ascending.
@@ -34,6 +38,7 @@ class Measurement {
   [[nodiscard]] double mean_dn() const { return on_rung_ == 0 ? 0.0 : sum_dn_ / on_rung_; }
 
  private:
+  [[nodiscard]] std::optional<ExposureChooser::Signal> expected_signal(const ExposureChooser& chooser) const;
   Verdict add_dark(double mean_dn, ExposureChooser& chooser);
   Verdict add_saturated();
   Verdict add_lit(std::uint32_t pixels, ExposureChooser& chooser);

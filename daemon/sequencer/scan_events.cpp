@@ -13,7 +13,13 @@ json parts_s(const TimeParts& time) {
           {"settle_s", in_seconds(time.settle)},
           {"expose_s", in_seconds(time.expose)},
           {"read_s", in_seconds(time.read)},
-          {"idle_s", in_seconds(time.idle)}};
+          {"idle_s", in_seconds(time.idle.total())},
+          {"idle_by",
+           {{"commit_s", in_seconds(time.idle.commit)},
+            {"wire_s", in_seconds(time.idle.wire)},
+            {"device_s", in_seconds(time.idle.device)},
+            {"hold_s", in_seconds(time.idle.hold)},
+            {"planning_s", in_seconds(time.idle.planning)}}}};
 }
 
 // Text from outside may hold broken UTF-8: it is replaced, never thrown over.

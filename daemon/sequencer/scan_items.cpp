@@ -35,8 +35,12 @@ void ScanItems::decide(const ItemKey& item, Fate decided) {
   ++(decided == Fate::Accepted ? accepted_ : skipped_);
 }
 
-std::optional<ItemKey> ScanItems::next(Instant now) {
+void ScanItems::pass_decided() {
   while (cursor_ < order_.size() && sample_[static_cast<std::size_t>(order_[cursor_])] != Fate::Open) ++cursor_;
+}
+
+std::optional<ItemKey> ScanItems::next(Instant now) {
+  pass_decided();
   if (!on_reference_) {
     const bool block_is_over = !block_.empty() && now - block_began_ >= pass_;
     if (cursor_ < order_.size() && !block_is_over) return ItemKey{order_[cursor_], Target::Sample};
@@ -49,9 +53,34 @@ std::optional<ItemKey> ScanItems::next(Instant now) {
   return std::nullopt;
 }
 
+std::optional<ItemKey> ScanItems::sample_after(std::int32_t point) const {
+  for (std::size_t place = cursor_; place < order_.size(); ++place) {
+    const std::int32_t candidate = order_[place];
+    if (candidate == point || sample_[static_cast<std::size_t>(candidate)] != Fate::Open) continue;
+    return ItemKey{candidate, Target::Sample};
+  }
+  return std::nullopt;
+}
+
+std::optional<ItemKey> ScanItems::next_after(const ItemKey& item, Instant now) const {
+  if (item.target == Target::Sample) {
+    const bool block_is_over = now - (block_.empty() ? now : block_began_) >= pass_;
+    const auto sample = block_is_over ? std::nullopt : sample_after(item.point);
+    if (sample) return sample;
+    const bool owes_reference = reference_[static_cast<std::size_t>(item.point)] == Fate::Open;
+    return owes_reference ? std::optional(ItemKey{item.point, Target::Reference}) : std::nullopt;
+  }
+  for (std::size_t k = block_.size(); k-- > 0;) {
+    if (block_[k] == item.point || reference_[static_cast<std::size_t>(block_[k])] != Fate::Open) continue;
+    return ItemKey{block_[k], Target::Reference};
+  }
+  return sample_after(-1);
+}
+
 void ScanItems::accept(const ItemKey& item, Instant now) {
   decide(item, Fate::Accepted);
   if (item.target != Target::Sample) return;
+  pass_decided();
   if (block_.empty()) block_began_ = now;
   block_.push_back(item.point);
 }

@@ -21,6 +21,8 @@ class ScanItems {
   /// The next item that is not decided; none when all are. The same until it is decided, unless the block's time
   /// passes.
   [[nodiscard]] std::optional<ItemKey> next(Instant now);
+  /// What `next` will be once `item` is accepted, if that is plain; nothing decides it yet.
+  [[nodiscard]] std::optional<ItemKey> next_after(const ItemKey& item, Instant now) const;
   void accept(const ItemKey& item, Instant now);
   /// Skipping a sample item skips its partner too: what is skipped, to be recorded.
   std::vector<ItemKey> give_up(const ItemKey& item);
@@ -34,7 +36,9 @@ class ScanItems {
  private:
   enum class Fate : std::uint8_t { Open, Accepted, Skipped };
   Fate& fate(const ItemKey& item);
+  [[nodiscard]] std::optional<ItemKey> sample_after(std::int32_t point) const;
   void decide(const ItemKey& item, Fate fate);
+  void pass_decided();
 
   std::vector<std::int32_t> order_;
   Duration pass_;

@@ -17,16 +17,8 @@ namespace {
 using calibration::Target;
 using stage::Axis;
 
-// How long the slowest of the axes that this move moves will settle.
-Duration settle_time(const drivers::StageConfig& stage, const drivers::MotionTarget& target,
-                     const std::optional<drivers::StageState>& from) {
-  Duration settle{};
-  for (const Axis axis : stage::kAllAxes) {
-    const std::size_t a = stage::index_of(axis);
-    if (!target[a] || (from && std::abs(from->axes[a].position - *target[a]) <= stage.axes[a].window)) continue;
-    settle = std::max(settle, stage.axes[a].settle);
-  }
-  return settle;
+bool moves_an_axis(const drivers::MotionTarget& target) {
+  return std::ranges::any_of(target, [](const auto& place) { return place.has_value(); });
 }
 
 // A radiometer's word counts instead of the stage's own.
@@ -70,22 +62,38 @@ ReadingRecord reading_from(const Job& job, Duration exposure) {
 
 // ---- beginning ----
 
+Job Sequencer::Impl::new_job(Job::Kind kind, Instant now) {
+  Job job{.kind = kind, .started = now};
+  job.time.idle = std::exchange(scan->between, {});
+  return job;
+}
+
 void Sequencer::Impl::start_item(const ItemKey& item, Instant now) {
-  const ScanPoint& point = scan->points[static_cast<std::size_t>(item.point)];
+  scan->job = new_job(Job::Kind::Item, now);
+  scan->job->item = item;
+  if (const auto aimed = aim(*scan->job); !aimed) return job_failed(aimed.error(), now);
+  begin_measurement(*scan->job);
+}
+
+Result<void> Sequencer::Impl::aim(Job& job) const {
+  const ScanPoint& point = scan->points[static_cast<std::size_t>(job.item.point)];
   auto target = axis_targets(point.geometry, point.wavelength, config.instrument,
                              stage ? positions_of(*stage) : home_position(config.instrument));
-  scan->job = Job{.kind = Job::Kind::Item, .item = item, .started = now};
-  if (!target) return job_failed(target.error(), now);
+  if (!target) return failure(target.error());
   const CarriagePositions& carriage = config.instrument.carriage;
   (*target)[stage::index_of(Axis::Carriage)] =
-      in_millimetres(item.target == Target::Sample ? carriage.sample : carriage.reference);
-  scan->job->target = *target;
-  const auto filter = static_cast<int>(std::lround((*target)[stage::index_of(Axis::FilterWheel)].value_or(0.0)));
-  scan->job->measurement = Measurement::of_item(scan->chooser, item.target, filter);
+      in_millimetres(job.item.target == Target::Sample ? carriage.sample : carriage.reference);
+  job.target = *target;
+  return {};
+}
+
+void Sequencer::Impl::begin_measurement(Job& job) const {
+  const auto filter = static_cast<int>(std::lround(job.target[stage::index_of(Axis::FilterWheel)].value_or(0.0)));
+  job.measurement = Measurement::of_item(scan->chooser, job.item.target, filter);
 }
 
 void Sequencer::Impl::start_park(Instant now) {
-  scan->job = Job{.kind = Job::Kind::Park, .started = now};
+  scan->job = new_job(Job::Kind::Park, now);
 }
 
 void Sequencer::Impl::drive_job(Instant now) {
@@ -94,18 +102,10 @@ void Sequencer::Impl::drive_job(Instant now) {
   if (job.phase == Job::Phase::ToMove && scan->is_position_in_doubt) {
     job.phase = Job::Phase::Homing;
     job.asked = now;
+    scan->ledger.enter(job.time.idle.planning, now);
     return ask_stage(StageUse::HomeAgain, gonio::daemon::Home{.epoch = epoch});
   }
-  if (job.phase == Job::Phase::ToMove) {
-    const bool is_lit = job.kind == Job::Kind::Item;
-    job.phase = Job::Phase::Moving;
-    job.asked = now;
-    job.settle = settle_time(config.instrument.stage, job.target, stage);
-    return ask_stage(StageUse::Move, MoveTo{.epoch = epoch,
-                                            .target = job.target,
-                                            .source_shutter_open = job.kind != Job::Kind::Park,
-                                            .detector_shutter_open = is_lit});
-  }
+  if (job.phase == Job::Phase::ToMove) return ask_to_move(job, now);
   if (job.phase != Job::Phase::InPlace) return;
   if (job.kind == Job::Kind::Park) {
     const bool is_early = scan->items.open(Target::Sample) + scan->items.open(Target::Reference) > 0;
@@ -114,25 +114,41 @@ void Sequencer::Impl::drive_job(Instant now) {
                       is_early ? "finished early, data kept" : "complete");
   }
   // At most one item is ever uncommitted: its commit returns before the next light is taken.
-  if (!has_uncommitted_item()) begin_exposure(now);
+  if (!has_uncommitted_item()) return begin_exposure(now);
+  job.awaits_commit = true;
+}
+
+void Sequencer::Impl::ask_to_move(Job& job, Instant now) {
+  job.phase = Job::Phase::Moving;
+  job.asked = now;
+  scan->ledger.enter(job.is_going_back ? job.time.idle.device : job.time.idle.planning, now);
+  job.model = model_of(job.target);
+  ask_stage(StageUse::Move, MoveTo{.epoch = epoch,
+                                   .target = job.target,
+                                   .source_shutter_open = job.kind != Job::Kind::Park,
+                                   .detector_shutter_open = job.kind == Job::Kind::Item});
 }
 
 void Sequencer::Impl::on_homed_again(const Result<drivers::StageState>& state, Instant now) {
   if (!scan || !scan->job) return;
   if (!state) return job_failed(state.error(), now);
   scan->is_position_in_doubt = false;
-  scan->job->time.move += now - scan->job->asked;
+  scan->ledger.enter(scan->job->time.idle.device, now);
   scan->job->phase = Job::Phase::ToMove;
 }
 
 void Sequencer::Impl::on_moved(const Result<drivers::StageState>& state, Instant now) {
   if (!scan || !scan->job) return;
+  Job& job = scan->ahead ? *scan->ahead : *scan->job;
+  if (!state && scan->ahead) {
+    job.error = state.error();  // its turn has not come
+    return;
+  }
   if (!state) return job_failed(state.error(), now);
-  Job& job = *scan->job;
-  const Duration elapsed = now - job.asked;
-  const Duration settled = std::min(elapsed, job.settle);
-  job.time.settle += settled;
-  job.time.move += elapsed - settled;
+  if (std::exchange(job.is_going_back, false)) scan->ledger.enter(job.time.idle.device, now);
+  if (!moves_an_axis(job.target)) scan->ledger.enter(job.time.move, now);  // the shutters
+  scan->ledger.enter_first(job.model.move, job.time.move, now);
+  scan->ledger.enter(job.model.settle, job.time.settle, job.time.idle.wire, now);
   job.phase = Job::Phase::InPlace;
 }
 
@@ -141,6 +157,8 @@ void Sequencer::Impl::on_moved(const Result<drivers::StageState>& state, Instant
 void Sequencer::Impl::begin_exposure(Instant now) {
   Job& job = *scan->job;
   const Duration exposure = scan->chooser.rungs()[job.measurement->rung()];
+  scan->ledger.enter(job.awaits_commit ? job.time.idle.commit : job.time.idle.planning, now);
+  job.awaits_commit = false;
   job.phase = Job::Phase::Exposing;
   job.asked = now;
   job.gate.reset();
@@ -159,6 +177,7 @@ void Sequencer::Impl::take_light(Instant now) {
   const std::size_t rung = job.measurement->rung();
   const Duration exposure = scan->chooser.rungs()[rung];
   job.asked = now;
+  scan->ledger.enter(job.time.idle.wire, now);  // a look before it, where no gate latches
   if (config.instrument.monitor) ask_monitor(MonitorUse::Reading, TakeMonitor{.window = exposure});
   ask_detector(DetectorUse::Frame,
                TakeFrame{.settings = {.exposure = exposure, .gain_db = config.instrument.detector.gain_db},
@@ -212,6 +231,8 @@ void Sequencer::Impl::on_gate(const Result<drivers::StageState>& state, Instant 
                       now);
   }
   scan->job->gate = *state;
+  count_light(*scan->job, now);
+  leave_early(now);
   join_exposure(now);
 }
 
@@ -227,14 +248,13 @@ void Sequencer::Impl::join_exposure(Instant now) {
   Job& job = *scan->job;
   if (!job.frame || (config.instrument.monitor && !job.monitor)) return;
   if (!job.gate) {
-    if (!config.instrument.has_gate()) ask_stage(StageUse::After, LookAtStage{});
-    return;
+    if (config.instrument.has_gate()) return;
+    count_light(job, now);
+    return ask_stage(StageUse::After, LookAtStage{});
   }
   const Duration exposure = scan->chooser.rungs()[job.measurement->rung()];
-  const Duration beyond = std::max(Duration::zero(), now - job.asked - exposure);
-  job.time.expose += now - job.asked - beyond;
-  job.time.read += beyond;
-  scan->chooser.learn_frame_time(beyond);
+  if (!scan->ahead) scan->ledger.enter(config.instrument.has_gate() ? job.time.read : job.time.idle.wire, now);
+  scan->chooser.learn_frame_time(std::max(Duration::zero(), now - job.asked - exposure));
   if (job.monitor) set_monitor(job.gate->gate, job.monitor->reading);
   const auto verdict = job.measurement->add(reading_from(job, exposure), scan->chooser);
   if (lamp_is_out(job.gate->gate, now)) return drop_job(now);
@@ -247,7 +267,13 @@ void Sequencer::Impl::join_exposure(Instant now) {
                       now);
   }
   if (verdict == Measurement::Verdict::Done) return accept_job(now);
+  if (scan->ahead) return go_back(now);
   job.phase = Job::Phase::InPlace;
+}
+
+// The light is over: what is not the exposure's own was the wires'.
+void Sequencer::Impl::count_light(Job& job, Instant now) {
+  scan->ledger.enter(scan->chooser.rungs()[job.measurement->rung()], job.time.expose, job.time.idle.wire, now);
 }
 
 bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) {
@@ -274,25 +300,23 @@ bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) 
 
 // ---- done ----
 
-void Sequencer::Impl::finish_times(Job& job, Instant now) {
-  job.time.idle = Duration::zero();
-  job.time.idle = std::max(Duration::zero(), now - job.started - job.time.total());
+StepTime Sequencer::Impl::model_of(const drivers::MotionTarget& target) const {
+  if (!stage || !moves_an_axis(target)) return {};
+  return step_time(config.instrument, positions_of(*stage), target).value_or(StepTime{});
 }
 
-NewAttempt Sequencer::Impl::attempt_of(const Job& job, AttemptOutcome outcome, Instant now) const {
-  NewAttempt attempt{.scan = scan->id, .item = job.item, .outcome = outcome, .started = job.started};
-  Job timed = job;
-  finish_times(timed, now);
-  attempt.time = timed.time;
+NewAttempt Sequencer::Impl::attempt_of(Job& job, AttemptOutcome outcome, Instant now) {
+  if (!scan->ahead) scan->ledger.enter(job.time.idle.planning, now);
+  NewAttempt attempt{.scan = scan->id, .item = job.item, .outcome = outcome, .time = job.time, .started = job.started};
   if (job.measurement) attempt.readings = job.measurement->readings();
   return attempt;
 }
 
 void Sequencer::Impl::accept_job(Instant now) {
   Job job = *std::exchange(scan->job, std::nullopt);
-  finish_times(job, now);
   scan->spent += job.time;
   job.kind == Job::Kind::Item ? accept_item(job, now) : accept_dark(job, now);
+  if (scan->ahead) take_up_ahead(now);
 }
 
 void Sequencer::Impl::accept_item(Job& job, Instant now) {
@@ -316,9 +340,12 @@ void Sequencer::Impl::accept_item(Job& job, Instant now) {
 
 void Sequencer::Impl::drop_job(Instant now) {
   if (!scan->job) return;
+  drop_ahead(now);
   disown_calls();
-  const Job job = *std::exchange(scan->job, std::nullopt);
-  if (job.kind != Job::Kind::Item || !job.measurement || job.measurement->readings().empty()) return;
+  Job job = *std::exchange(scan->job, std::nullopt);
+  if (job.kind != Job::Kind::Item || !job.measurement || job.measurement->readings().empty()) {
+    return count_as_lost(job, now);
+  }
   const NewAttempt attempt = attempt_of(job, AttemptOutcome::Dropped, now);
   scan->spent += attempt.time;
   commit({.at = now, .writes = {attempt}, .events = {event_attempt(attempt, *job.measurement)}},
@@ -326,6 +353,7 @@ void Sequencer::Impl::drop_job(Instant now) {
 }
 
 void Sequencer::Impl::job_failed(const Error& error, Instant now) {
+  drop_ahead(now);
   disown_calls();
   if (error.code == ErrorCode::Stopped || error.code == ErrorCode::StaleEpoch) stage_stopped = true;
   const bool was_elsewhere = error.code == ErrorCode::OutOfTolerance || error.code == ErrorCode::MotionLate;
@@ -338,8 +366,14 @@ void Sequencer::Impl::job_failed(const Error& error, Instant now) {
   add_hold(hold_for(error.code), error.device.empty() ? kDaemon : error.device, describe(error), now);
 }
 
+// Time that leaves no attempt and no visit: the next one bears it.
+void Sequencer::Impl::count_as_lost(const Job& job, Instant now) {
+  scan->ledger.enter(scan->between.device, now);
+  scan->between.device += job.time.total();
+}
+
 void Sequencer::Impl::item_failed(const Error& error, Instant now) {
-  const Job job = *std::exchange(scan->job, std::nullopt);
+  Job job = *std::exchange(scan->job, std::nullopt);
   NewAttempt attempt = attempt_of(job, AttemptOutcome::Failed, now);
   attempt.error = error;
   scan->spent += attempt.time;

@@ -48,8 +48,9 @@ void Sequencer::Impl::advance(Instant now) {
   }
 }
 
-void Sequencer::Impl::activate_next(Instant /*now*/) {
+void Sequencer::Impl::activate_next(Instant now) {
   scan.emplace(std::move(queue.front()));
+  scan->ledger.restart(now);
   queue.pop_front();
 }
 
@@ -94,12 +95,20 @@ void Sequencer::Impl::transition(ScanEvent event, Instant now, const std::string
          {.done =
               [this, state = *to, finish_asked, command](const CommitReceipt&, Instant then) {
                 is_in_transition = false;
+                count_state(scan->state, then);
                 scan->state = state;
                 scan->finish_asked = finish_asked;
                 if (command) reply(*command, CommandDone{.scan = scan->id});
                 entered(state, then);
               },
           .reply_failure_to = command});
+}
+
+// What passed in a state, but for jobs, which count for themselves.
+void Sequencer::Impl::count_state(ScanState state, Instant now) {
+  IdleTime& between = scan->between;
+  const bool holds = state == ScanState::Holding;
+  scan->ledger.enter(holds ? between.hold : state == ScanState::Preparing ? between.device : between.planning, now);
 }
 
 void Sequencer::Impl::entered(ScanState state, Instant now) {

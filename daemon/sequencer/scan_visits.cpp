@@ -21,6 +21,10 @@ VisitClocks Sequencer::Impl::visit_clocks() const {
   return {.dark = {.every = scan->policy.dark_every, .last = scan->last_dark, .is_owed = scan->dark_owed}};
 }
 
+bool Sequencer::Impl::visit_may_be_next(Instant now) const {
+  return next_job(visit_clocks(), now, true, [](NextJob) { return Detour{}; }) != NextJob::Item;
+}
+
 void Sequencer::Impl::choose_job(Instant now) {
   if (scan->state == ScanState::Finishing) {
     return next_closing_job(visit_clocks()) == NextJob::Dark ? start_dark(now) : start_park(now);
@@ -43,7 +47,7 @@ void Sequencer::Impl::start_dark(Instant now) {
   const std::size_t lowest = is_first ? 0 : scan->lowest_rung.value_or(0);
   const std::size_t highest = is_first ? top : scan->highest_rung.value_or(top);
   const int frames = std::clamp(scan->most_frames, kFewestDarkFrames, kMostDarkFrames);
-  scan->job = Job{.kind = Job::Kind::Dark, .started = now};
+  scan->job = new_job(Job::Kind::Dark, now);
   scan->job->measurement = Measurement::of_dark(lowest, highest, frames);
 }
 
@@ -60,7 +64,7 @@ void Sequencer::Impl::accept_dark(Job& job, Instant now) {
 
 // A scan without its dark is worth nothing: never skipped.
 void Sequencer::Impl::dark_failed(const Error& error, Instant now) {
-  scan->job.reset();
+  count_as_lost(*std::exchange(scan->job, std::nullopt), now);
   if (++scan->dark_failures <= scan->policy.item_retries) return;  // chosen again
   add_hold(hold_for(error.code), error.device, "dark visit: " + describe(error), now);
 }

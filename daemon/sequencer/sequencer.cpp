@@ -190,6 +190,7 @@ void Sequencer::Impl::store_failed(const Error& error, std::optional<CommandId> 
   is_in_transition = false;
   if (!scan) return;
   scan->job.reset();
+  scan->ahead.reset();
   disown_calls();
   scan->holds.push_back(Hold{.name = HoldName::Disk, .owner = "store", .reason = describe(error)});
 }

@@ -17,9 +17,9 @@ namespace gonio::daemon {
 /// Who, of what nobody asked for.
 inline constexpr const char* kDaemon = "goniod";
 
-/// The inside of the sequencer, in five sources: sequencer.cpp (channels and answers), scan_life.cpp (states),
-/// scan_jobs.cpp (moves, exposures, results), scan_visits.cpp (visits, and which job is next), scan_commands.cpp (what
-/// clients ask).
+/// The inside of the sequencer, in six sources: sequencer.cpp (channels and answers), scan_life.cpp (states),
+/// scan_jobs.cpp (moves, exposures, results), scan_ahead.cpp (the next move beside the last frame), scan_visits.cpp
+/// (visits, and which job is next), scan_commands.cpp (what clients ask).
 struct Sequencer::Impl {
   explicit Impl(SequencerConfig configuration) : config(std::move(configuration)), epoch(config.epoch) {}
 
@@ -96,6 +96,7 @@ struct Sequencer::Impl {
                   std::optional<CommandId> command = std::nullopt, std::vector<StoreWrite> more = {},
                   std::vector<NewEvent> more_events = {});
   void entered(ScanState state, Instant now);
+  void count_state(ScanState state, Instant now);
   void add_hold(HoldName name, const std::string& owner, const std::string& reason, Instant now,
                 std::optional<CommandId> command = std::nullopt);
   void on_look(const Result<drivers::StageState>& state, Instant now);
@@ -107,6 +108,10 @@ struct Sequencer::Impl {
 
   // ---- jobs (scan_jobs.cpp) ----
   void start_item(const ItemKey& item, Instant now);
+  /// Sets where the job's axes go. Errors: those of axis_targets.
+  [[nodiscard]] Result<void> aim(Job& job) const;
+  void begin_measurement(Job& job) const;
+  void ask_to_move(Job& job, Instant now);
   void start_park(Instant now);
   void drive_job(Instant now);
   void begin_exposure(Instant now);
@@ -127,12 +132,24 @@ struct Sequencer::Impl {
   void give_up_item(const ItemKey& item, const Error& error, StoreTransaction transaction, Instant now);
   /// Gives up what is in hand without a decision; exposures made are recorded. Open calls are awaited and dropped.
   void drop_job(Instant now);
-  [[nodiscard]] NewAttempt attempt_of(const Job& job, AttemptOutcome outcome, Instant now) const;
-  static void finish_times(Job& job, Instant now);
+  [[nodiscard]] NewAttempt attempt_of(Job& job, AttemptOutcome outcome, Instant now);
+  [[nodiscard]] Job new_job(Job::Kind kind, Instant now);
+  [[nodiscard]] StepTime model_of(const drivers::MotionTarget& target) const;
+  void count_light(Job& job, Instant now);
+  void count_as_lost(const Job& job, Instant now);
+
+  // ---- leaving early (scan_ahead.cpp) ----
+  void leave_early(Instant now);
+  [[nodiscard]] bool may_leave(const Job& job, Instant now) const;
+  void take_up_ahead(Instant now);
+  void go_back(Instant now);
+  void drop_ahead(Instant now);
 
   // ---- visits, and which job is next (scan_visits.cpp) ----
   void choose_job(Instant now);
   [[nodiscard]] VisitClocks visit_clocks() const;
+  /// Whether a visit is due, or might be once its detour is looked at.
+  [[nodiscard]] bool visit_may_be_next(Instant now) const;
   void start_dark(Instant now);
   void accept_dark(Job& job, Instant now);
   void dark_failed(const Error& error, Instant now);

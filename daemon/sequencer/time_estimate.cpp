@@ -21,7 +21,11 @@ TimeParts& operator+=(TimeParts& sum, const TimeParts& more) {
   sum.settle += more.settle;
   sum.expose += more.expose;
   sum.read += more.read;
-  sum.idle += more.idle;
+  sum.idle.commit += more.idle.commit;
+  sum.idle.wire += more.idle.wire;
+  sum.idle.device += more.idle.device;
+  sum.idle.hold += more.idle.hold;
+  sum.idle.planning += more.idle.planning;
   return sum;
 }
 

@@ -136,7 +136,8 @@ void RecordWriter::operator()(const AddHold& add) {
 
 void RecordWriter::bind_time_parts(Statement& statement, const TimeParts& time) {
   statement.bind(time.move.count()).bind(time.settle.count()).bind(time.expose.count());
-  statement.bind(time.read.count()).bind(time.idle.count());
+  statement.bind(time.read.count()).bind(time.idle.total().count()).bind(time.idle.commit.count());
+  statement.bind(time.idle.wire.count()).bind(time.idle.device.count()).bind(time.idle.hold.count());
 }
 
 void RecordWriter::operator()(const NewAttempt& attempt) {
@@ -149,8 +150,8 @@ void RecordWriter::operator()(const NewAttempt& attempt) {
                                                      .bind(target));
   Statement& insert = database_.statement(
       "INSERT INTO attempt(scan_id, point_index, target, number, outcome, error_code, error, move_ns, settle_ns, "
-      "expose_ns, read_ns, idle_ns, run_id, started_boottime_ns, boottime_ns, utc_ns) "
-      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+      "expose_ns, read_ns, idle_ns, idle_commit_ns, idle_wire_ns, idle_device_ns, idle_hold_ns, run_id, "
+      "started_boottime_ns, boottime_ns, utc_ns) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
   insert.bind(attempt.scan).bind(attempt.item.point).bind(target).bind(number).bind(outcome_name(attempt.outcome));
   insert.bind(attempt.error ? traits(attempt.error->code).name : std::string_view());
   insert.bind(attempt.error ? describe(*attempt.error) : std::string());
@@ -181,9 +182,9 @@ void RecordWriter::operator()(const SkipItem& skip) {
 
 void RecordWriter::operator()(const NewVisit& visit) {
   Statement& insert = database_.statement(
-      "INSERT INTO visit(scan_id, kind, after_attempt, move_ns, settle_ns, expose_ns, read_ns, idle_ns, run_id, "
-      "started_boottime_ns, boottime_ns, utc_ns) "
-      "VALUES (?,?,(SELECT coalesce(max(attempt_id), 0) FROM attempt),?,?,?,?,?,?,?,?,?)");
+      "INSERT INTO visit(scan_id, kind, after_attempt, move_ns, settle_ns, expose_ns, read_ns, idle_ns, "
+      "idle_commit_ns, idle_wire_ns, idle_device_ns, idle_hold_ns, run_id, started_boottime_ns, boottime_ns, utc_ns) "
+      "VALUES (?,?,(SELECT coalesce(max(attempt_id), 0) FROM attempt),?,?,?,?,?,?,?,?,?,?,?,?,?)");
   insert.bind(visit.scan).bind(visit_kind_name(visit.kind));
   bind_time_parts(insert, visit.time);
   insert.bind(time_.run).bind(visit.started.time_since_epoch().count()).bind(time_.boottime_ns).bind(time_.utc_ns);

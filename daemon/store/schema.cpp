@@ -340,8 +340,20 @@ CREATE VIEW decided_item AS SELECT i.* FROM item i WHERE NOT EXISTS (SELECT 1 FR
   r.scan_id = i.scan_id AND r.point_index = i.point_index AND r.target = i.target AND r.round = i.round);
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3,
-                                                              kVersion4, kVersion5, kVersion6};
+// Version 7: what idle time waited for. The rest of idle_ns is the daemon's own; of older rows nobody told it apart.
+constexpr const char* kVersion7 = R"sql(
+ALTER TABLE attempt ADD COLUMN idle_commit_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE attempt ADD COLUMN idle_wire_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE attempt ADD COLUMN idle_device_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE attempt ADD COLUMN idle_hold_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE visit ADD COLUMN idle_commit_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE visit ADD COLUMN idle_wire_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE visit ADD COLUMN idle_device_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE visit ADD COLUMN idle_hold_ns INTEGER NOT NULL DEFAULT 0;
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4,
+                                                              kVersion5, kVersion6, kVersion7};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

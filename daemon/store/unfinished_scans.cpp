@@ -201,13 +201,20 @@ TimeParts read_time_spent(Database& database, ScanId scan) {
   Statement& query = database
                          .statement(
                              "SELECT total(move_ns), total(settle_ns), total(expose_ns), total(read_ns), "
-                             "total(idle_ns) FROM (SELECT move_ns, settle_ns, expose_ns, read_ns, idle_ns FROM "
-                             "attempt WHERE scan_id = ?1 UNION ALL SELECT move_ns, settle_ns, expose_ns, read_ns, "
-                             "idle_ns FROM visit WHERE scan_id = ?1)")
+                             "total(idle_ns), total(idle_commit_ns), total(idle_wire_ns), total(idle_device_ns), "
+                             "total(idle_hold_ns) FROM (SELECT move_ns, settle_ns, expose_ns, read_ns, idle_ns, "
+                             "idle_commit_ns, idle_wire_ns, idle_device_ns, idle_hold_ns FROM attempt WHERE scan_id = "
+                             "?1 UNION ALL SELECT move_ns, settle_ns, expose_ns, read_ns, idle_ns, idle_commit_ns, "
+                             "idle_wire_ns, idle_device_ns, idle_hold_ns FROM visit WHERE scan_id = ?1)")
                          .bind(scan);
   while (query.next()) {
     const auto part = [&query](int column) { return Duration(static_cast<std::int64_t>(query.real(column))); };
-    spent = {.move = part(0), .settle = part(1), .expose = part(2), .read = part(3), .idle = part(4)};
+    spent = {.move = part(0),
+             .settle = part(1),
+             .expose = part(2),
+             .read = part(3),
+             .idle = {.commit = part(5), .wire = part(6), .device = part(7), .hold = part(8)}};
+    spent.idle.planning = part(4) - spent.idle.total();
   }
   return spent;
 }

@@ -66,7 +66,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StageReport, age_s, moving, home
                                                 detector_shutter, monitor, lamp_temperature_c, detector_temperature_c,
                                                 room_temperature_c, humidity_percent, axes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HoldReport, name, owner, reason, age_s)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(TimeSplit, move_s, settle_s, expose_s, read_s, idle_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(IdleSplit, commit_s, wire_s, device_s, hold_s, planning_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(TimeSplit, move_s, settle_s, expose_s, read_s, idle_s, idle_by)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, sample, isotropic, state, outcome, who,
                                                 reference, instrument_sha256, submitted_utc, changed_utc, points,
                                                 merged, blocked, items, accepted, skipped, attempts, visits, spent,

@@ -49,13 +49,24 @@ struct HoldReport {
   double age_s = 0.0;
 };
 
+/// What idle time waited for: the store; wires (exchanges, looks that came late); devices (homing, ways back); holds;
+/// the daemon itself.
+struct IdleSplit {
+  double commit_s = 0.0;
+  double wire_s = 0.0;
+  double device_s = 0.0;
+  double hold_s = 0.0;
+  double planning_s = 0.0;
+};
+
 /// Where time goes; a sum, or a mean for one point.
 struct TimeSplit {
   double move_s = 0.0;
   double settle_s = 0.0;
   double expose_s = 0.0;
   double read_s = 0.0;
-  double idle_s = 0.0;
+  double idle_s = 0.0;  ///< the sum of `idle_by`
+  IdleSplit idle_by;
   [[nodiscard]] double total_s() const { return move_s + settle_s + expose_s + read_s + idle_s; }
 };
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace gonio::daemon {
 namespace {
 
@@ -34,6 +36,21 @@ TEST(ScanItems, ABlockOfSamplesIsFollowedByItsReferencesLastFirst) {
                                          {0, Target::Reference},
                                          {2, Target::Reference}}));
   EXPECT_EQ(items.accepted(), 6);
+}
+
+TEST(ScanItems, WhatIsNextAfterAnItemIsKnownBeforeItIsAccepted) {
+  std::vector<std::int32_t> order(40);
+  std::iota(order.begin(), order.end(), 0);
+  ScanItems items(40, order, seconds(21), {{3, Target::Sample}, {7, Target::Sample}, {7, Target::Reference}}, {});
+
+  Instant now = kStart;
+  for (auto item = items.next(now); item; item = items.next(now)) {
+    const auto foreseen = items.next_after(*item, now);
+    items.accept(*item, now);
+    EXPECT_EQ(foreseen, items.next(now)) << "after point " << item->point;
+    now += seconds(1);
+  }
+  EXPECT_EQ(items.accepted(), 80);
 }
 
 TEST(ScanItems, PartnersLieWithinTheBlocksTime) {

@@ -159,7 +159,9 @@ void ScanRig::execute_store(const StoreRequest& request) {
   }
   const StoreActor::Answer answer = store_->on(request, clock_.now());
   if (const auto* committed = std::get_if<CommitAnswer>(&answer)) {
-    if (committed->receipt) {
+    if (committed->receipt && on_event) {
+      std::ranges::for_each(committed->receipt->events, on_event);
+    } else if (committed->receipt) {
       events.insert(events.end(), committed->receipt->events.begin(), committed->receipt->events.end());
     }
     return tell(milliseconds(1), *committed);
@@ -209,6 +211,10 @@ void ScanRig::move(const MoveTo& to) {
   if (has_axes && to.epoch < world.stage.epoch) return refuse(ErrorCode::StaleEpoch, "epoch");
   if (has_axes && look().moving) return refuse(ErrorCode::DeviceRefused, "already moving");
   if (has_axes && !world.stage.homed) return refuse(ErrorCode::NotHomed, "not homed");
+  if (has_axes) {
+    EXPECT_GE(clock_.now(), world.gate_open_until) << "a move while light is taken";
+    world.moves_beside_a_frame += clock_.now() < world.frame_due ? 1 : 0;
+  }
   if (to.source_shutter_open) {
     world.stage.source_shutter = *to.source_shutter_open ? stage::ShutterState::Open : stage::ShutterState::Closed;
   }
@@ -325,7 +331,8 @@ void ScanRig::take_frame(const TakeFrame& take) {
     world.stage.gate.close_counts[a] = counts;
   }
   world.gate_open_until = clock_.now() + take.settings.exposure;
-  tell(take.settings.exposure + milliseconds(2), FrameAnswer{take.ticket, frame_of(take.settings)});
+  world.frame_due = world.gate_open_until + world.frame_takes;
+  tell(take.settings.exposure + world.frame_takes, FrameAnswer{take.ticket, frame_of(take.settings)});
   after(take.settings.exposure + milliseconds(1), [this, watch = *std::exchange(watched_, std::nullopt)] {
     sequencer_->on(StageAnswer{.ticket = watch.ticket, .state = look()}, clock_.now());
   });

@@ -29,6 +29,10 @@ struct ScriptedInstrument {
   std::function<std::optional<Error>()> frame_error = [] { return std::nullopt; };
   Duration frame_error_after = std::chrono::milliseconds(100);  ///< the gate's error comes after 500 ms
   std::function<std::optional<Error>()> camera_open_error = [] { return std::nullopt; };
+  Duration frame_takes =
+      std::chrono::milliseconds(2);  ///< from the end of the light to the frame; the gate says it 1 ms after
+  Instant frame_due{};               ///< of the last exposure
+  int moves_beside_a_frame = 0;      ///< begun after the light and before the frame
   double monitor = 1.0;
   // Of a radiometer in the camera's place, and of one in the lamp's light.
   double zero_w = 3e-7;  ///< in the dark
@@ -51,6 +55,7 @@ class ScanRig {
   ScriptedInstrument world;
   std::vector<CommandReply> replies;
   std::vector<EventRecord> events;  ///< as published: in order
+  std::function<void(const EventRecord&)> on_event;  ///< if set, events go there and are not kept
   bool refuse_commits = false;      ///< DiskFull for all that follow
 
   /// One step; false when nothing is left to do.

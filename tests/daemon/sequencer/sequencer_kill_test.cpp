@@ -16,8 +16,9 @@ api::Plan small_plan() {
   return plan;
 }
 
-int steps_of_unbroken_scan() {
+int steps_of_unbroken_scan(Duration frame_takes) {
   ScanRig rig;
+  rig.world.frame_takes = frame_takes;
   rig.submit(small_plan());
   int steps = 0;
   while (rig.step()) ++steps;
@@ -41,13 +42,14 @@ void expect_nothing_lost_or_doubled(ScanRig& rig, ScanId id, int kills) {
   }
 }
 
-TEST(SequencerKill, KilledAtEveryStepOfAScanItLosesAndDoublesNothing) {
-  const int steps = steps_of_unbroken_scan();
+void kill_at_every_step(Duration frame_takes) {
+  const int steps = steps_of_unbroken_scan(frame_takes);
   ASSERT_GT(steps, 50);
 
   for (int kill_after = 1; kill_after <= steps; ++kill_after) {
     SCOPED_TRACE("killed after step " + std::to_string(kill_after));
     ScanRig rig;
+    rig.world.frame_takes = frame_takes;
     const ScanId id = rig.submit(small_plan());
     for (int k = 0; k < kill_after; ++k) rig.step();
     const auto heard = rig.events;
@@ -77,6 +79,14 @@ TEST(SequencerKill, KilledAtEveryStepOfAScanItLosesAndDoublesNothing) {
     EXPECT_GE(rig.count("SELECT count(*) FROM item"), accepted_before);
     if (testing::Test::HasFailure()) return;
   }
+}
+
+TEST(SequencerKill, KilledAtEveryStepOfAScanItLosesAndDoublesNothing) {
+  kill_at_every_step(std::chrono::milliseconds(2));
+}
+
+TEST(SequencerKill, NorDoesItWhereTheArmsLeaveLongBeforeTheFrameComes) {
+  kill_at_every_step(std::chrono::seconds(2));
 }
 
 TEST(SequencerKill, KilledAgainAndAgainItStillArrives) {

@@ -124,5 +124,19 @@ TEST_F(OldStore, OfVersion1KeepsItsDecisionsAsTheFirstRound) {
   EXPECT_TRUE(unfinished->front().reopened.empty());
 }
 
+TEST_F(OldStore, OfVersion1ShowsIdleTimeThatNobodyToldApartAsTheDaemonsOwn) {
+  write("version_1.sql");
+  SQLite::Database(path_, SQLite::OPEN_READWRITE)
+      .exec("INSERT INTO visit VALUES (NULL, 1, 'dark', 0, 1, 2, 3, 4, 5000, (SELECT max(run_id) FROM run), 6, 7, 8)");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto info = StoreReader::open(path_).value()->scan(1);
+
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->spent.idle.planning, Duration(5000));
+  EXPECT_EQ(info->spent.idle.wire, Duration::zero());
+}
+
 }  // namespace
 }  // namespace gonio::daemon
