@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <map>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -100,6 +100,8 @@ class BirdReader {
   void read_adhoc_section(const JsonObject& said) {
     BrdfMetadata& m = brdf_.metadata;
     if (m.instrument.empty() && said.is_text("instrument")) m.instrument = said.text("instrument");
+    if (const std::optional<double> area = said.number("beam_area_mm2")) m.beam_area_mm2 = area;
+    if (const std::optional<double> angle = said.number("detector_solid_angle_sr")) m.detector_solid_angle_sr = angle;
     if (said.is_text("medium")) m.medium = said.text("medium");
     m.references = said.texts("references");
     brdf_.flag_names = said.texts("flag_names");
@@ -174,51 +176,74 @@ class BirdReader {
     return 0;
   }
 
-  std::vector<Polarisation> polarisations(const JsonObject& data, std::string_view key) {
-    std::vector<Polarisation> found(brdf_.points.size(), Polarisation::Unknown);
+  // As the file writes them: "s", "p", "u" in quotes, or Stokes vectors.
+  std::vector<std::string> polarisations(const JsonObject& data, std::string_view key) {
+    if (!data.has(key)) return std::vector<std::string>(brdf_.points.size());
     const JsonObject said = data.object(key);
-    if (!data.has(key) || said.text("notation") != "sp") return found;
-    const std::vector<std::string> letters = said.texts("values");
-    if (letters.size() != found.size()) {
-      said.fail("values", fmt::format("{} values", letters.size()), fmt::format("{}, as theta_i", found.size()));
-      return found;
-    }
-    std::ranges::transform(letters, found.begin(), [](const std::string& letter) {
-      return letter == "s" ? Polarisation::S : letter == "p" ? Polarisation::P : Polarisation::Unpolarised;
-    });
+    std::vector<std::string> found = said.entries("values");
+    if (found.size() != brdf_.points.size())
+      said.fail("values", fmt::format("{} values", found.size()), fmt::format("{}, as theta_i", brdf_.points.size()));
     return found;
   }
 
-  // A channel for each wavelength and polarisation; our own files say which of them a point had.
-  void read_channels(const JsonObject& data) {
-    std::vector<double> wavelengths = values(data, "wavelength_i");
-    if (wavelengths.empty()) wavelengths.assign(brdf_.points.size(), 0.0);
+  // A Stokes vector tells channels apart by their names: which sign of its second part is s, the schema does not say.
+  static Polarisation polarisation(const std::string& said, std::string_view side, Channel& channel) {
+    if (said == R"("s")") return Polarisation::S;
+    if (said == R"("p")") return Polarisation::P;
+    if (said == R"("u")") return Polarisation::Unpolarised;
+    if (!said.empty()) channel.name += fmt::format(" {} {}", side, said);
+    return Polarisation::Unknown;
+  }
+
+  struct Light {
+    double wavelength_nm;
+    std::string incident;
+    std::string reflected;
+    auto operator<=>(const Light&) const = default;
+  };
+
+  static Channel channel_of(const Light& light) {
+    Channel channel = light.wavelength_nm > 0.0 ? channel_at(light.wavelength_nm) : Channel{};
+    channel.incident = polarisation(light.incident, "incident", channel);
+    channel.reflected = polarisation(light.reflected, "reflected", channel);
+    return channel;
+  }
+
+  std::vector<Light> read_lights(const JsonObject& data) {
     constexpr double kMicrometre = 1000.0;
-    if (data.object("wavelength_i").text("unit") == "μm")
-      for (double& wavelength : wavelengths) wavelength *= kMicrometre;
-    const std::vector<Polarisation> incident = polarisations(data, "polarization_i");
-    const std::vector<Polarisation> reflected = polarisations(data, "polarization_r");
-    const std::vector<double> own =
-        channel_names_.empty() ? std::vector<double>() : values(data.object("adhoc_variables"), bird::kChannel);
-    if (source_.error) return;
-    brdf_.channels.resize(own.empty() ? 0 : channel_names_.size());
-    std::map<std::tuple<double, Polarisation, Polarisation>, std::uint32_t> by_light;
-    for (std::size_t n = 0; n < brdf_.points.size(); ++n) {
-      Channel channel = wavelengths[n] > 0.0 ? channel_at(wavelengths[n]) : Channel{};
-      channel.incident = incident[n];
-      channel.reflected = reflected[n];
-      if (own.empty()) {
-        const auto [at, is_new] = by_light.emplace(std::tuple(wavelengths[n], incident[n], reflected[n]),
-                                                   static_cast<std::uint32_t>(brdf_.channels.size()));
-        if (is_new) brdf_.channels.push_back(channel);
-        brdf_.points[n].channel = at->second;
-        continue;
-      }
-      const std::uint32_t index = bits(data, bird::kChannel, own[n]);
+    std::vector<double> wavelengths = values(data, "wavelength_i");
+    wavelengths.resize(brdf_.points.size());
+    const bool is_micrometres = data.object("wavelength_i").text("unit") == "μm";
+    const std::vector<std::string> incident = polarisations(data, "polarization_i");
+    const std::vector<std::string> reflected = polarisations(data, "polarization_r");
+    std::vector<Light> lights;
+    for (std::size_t n = 0; n < brdf_.points.size() && !source_.error; ++n)
+      lights.push_back({is_micrometres ? kMicrometre * wavelengths[n] : wavelengths[n], incident[n], reflected[n]});
+    return lights;
+  }
+
+  // A channel for each kind of light; our own files say which of their channels a point had.
+  void read_channels(const JsonObject& data) {
+    const std::vector<Light> lights = read_lights(data);
+    if (!channel_names_.empty()) return read_own_channels(data.object("adhoc_variables"), lights);
+    std::map<Light, std::uint32_t> by_light;
+    for (std::size_t n = 0; n < lights.size(); ++n) {
+      const auto [at, is_new] = by_light.emplace(lights[n], static_cast<std::uint32_t>(brdf_.channels.size()));
+      if (is_new) brdf_.channels.push_back(channel_of(lights[n]));
+      brdf_.points[n].channel = at->second;
+    }
+  }
+
+  void read_own_channels(const JsonObject& adhoc, const std::vector<Light>& lights) {
+    adhoc.require(bird::kChannel);
+    const std::vector<double> own = values(adhoc, bird::kChannel);
+    brdf_.channels.resize(channel_names_.size());
+    for (std::size_t n = 0; n < own.size(); ++n) {
+      const std::uint32_t index = bits(adhoc, bird::kChannel, own[n]);
       brdf_.points[n].channel = index;
       if (index >= channel_names_.size()) continue;  // `check` refuses it
-      channel.name = channel_names_[index];
-      brdf_.channels[index] = channel;
+      brdf_.channels[index] = channel_of(lights[n]);
+      brdf_.channels[index].name = channel_names_[index];
     }
   }
 

@@ -42,31 +42,14 @@ ordered_json provenance(const BrdfMetadata& m) {
           {"contact_person", stated(m.operator_name)}};
 }
 
-// The schema has no half-known instrument: beam area and solid angle, or "NA".
-ordered_json instrumentation(const MeasuredBrdf& brdf) {
-  const BrdfMetadata& m = brdf.metadata;
-  if (!m.beam_area_mm2 || !m.detector_solid_angle_sr) return bird::kNotApplicable;
-  const auto [shortest, longest] = std::ranges::minmax_element(brdf.channels, {}, &Channel::wavelength_nm);
-  const ordered_json range{
-      {"min_value", shortest->wavelength_nm}, {"max_value", longest->wavelength_nm}, {"unit", "nm"}};
-  const ordered_json area{{"area", {{"value", *m.beam_area_mm2}, {"unit", "mm^2"}}}};
-  return {{"name", stated(m.instrument)},
-          {"illumination_system",
-           {{"name", stated(m.instrument)},
-            {"source", ordered_json::object()},
-            {"beam", {{"shape", bird::kNotStated}, {"dimensions", area}}}}},
-          {"detection_system",
-           {{"name", stated(m.instrument)},
-            {"sensors", ordered_json::array({{{"name", bird::kNotStated}, {"spectral_response_range", range}}})},
-            {"solid_angle", {{"value", *m.detector_solid_angle_sr}, {"unit", "sr"}}}}},
-          {"operator_name", stated(m.operator_name)}};
-}
-
-// What the schema has no key for.
+// What the schema has no key for. It has one for the instrument, but no half-known one: whoever gives it must give the
+// lamp's power and the sensor's range, too.
 ordered_json adhoc_section(const MeasuredBrdf& brdf) {
   const BrdfMetadata& m = brdf.metadata;
   ordered_json said = ordered_json::object();
   if (!m.instrument.empty()) said["instrument"] = m.instrument;
+  if (m.beam_area_mm2) said["beam_area_mm2"] = *m.beam_area_mm2;
+  if (m.detector_solid_angle_sr) said["detector_solid_angle_sr"] = *m.detector_solid_angle_sr;
   if (!m.medium.empty()) said["medium"] = m.medium;
   if (!m.references.empty()) said["references"] = m.references;
   if (!brdf.flag_names.empty()) said["flag_names"] = brdf.flag_names;
@@ -99,7 +82,7 @@ ordered_json metadata(const MeasuredBrdf& brdf) {
                     {"provenance", provenance(m)},
                     {"description", stated(m.description)},
                     {"method", m.method == Method::Simulation ? "simulation" : "measurement"},
-                    {"instrumentation", instrumentation(brdf)}};
+                    {"instrumentation", bird::kNotApplicable}};
   said["software"] = m.software.empty() ? ordered_json(bird::kNotApplicable) : ordered_json{{"name", m.software}};
   said["sample"] = sample(m);
   said["environment"] = bird::kNotApplicable;

@@ -101,6 +101,16 @@ std::vector<std::string> JsonObject::texts(std::string_view key) const {
   return {};
 }
 
+std::vector<std::string> JsonObject::entries(std::string_view key) const {
+  const json* value = find(key);
+  std::vector<std::string> found;
+  if (value == nullptr) return found;
+  if (!value->is_array()) fail(key, value->type_name(), "an array");
+  if (value->is_array())
+    for (const json& one : *value) found.push_back(one.dump(-1, ' ', true, json::error_handler_t::replace));
+  return found;
+}
+
 std::vector<double> JsonObject::numbers(std::string_view key) const {
   const json* value = find(key);
   if (value == nullptr || !value->is_array()) {

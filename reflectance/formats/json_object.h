@@ -37,6 +37,8 @@ class JsonObject {
   [[nodiscard]] std::optional<double> number(std::string_view key) const;
   [[nodiscard]] std::size_t whole(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
+  /// Each entry of an array as JSON text, whatever it is; empty where the key is absent.
+  [[nodiscard]] std::vector<std::string> entries(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] JsonObject object(std::string_view key) const;
   [[nodiscard]] std::vector<JsonObject> objects(std::string_view key) const;

@@ -24,6 +24,8 @@ class TextLines {
   [[nodiscard]] int line() const { return line_; }
   /// How many bytes are left: no list in the file can be longer than that.
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() - at_; }
+  /// What follows the line that was read last: binary data behind a header of text.
+  [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
   /// Whether the line that was read last had its end: a text cut off in a number does not.
   [[nodiscard]] bool line_was_ended() const { return ended_; }
   [[nodiscard]] const std::string& file() const { return file_; }

@@ -175,8 +175,9 @@ TEST(BirdFile, OfOthersIsRead) {
   EXPECT_EQ(read->metadata.temperature_c, 23.2);
   EXPECT_EQ(read->points[0].f_per_sr, 0.254);
   EXPECT_EQ(read->points[0].phi_r_deg, 60.0);
-  ASSERT_EQ(read->channels.size(), 2u);
-  EXPECT_EQ(read->channels[1].wavelength_nm, 650.0);
+  ASSERT_EQ(read->channels.size(), 8u) << "four wavelengths, two polarisations";
+  EXPECT_EQ(read->channels[2].wavelength_nm, 650.0);
+  EXPECT_EQ(read->channels[1].name, "550nm incident [1,-1,0,0]");
 }
 
 TEST(BirdFile, TakesRadiansAndPercent) {
@@ -217,6 +218,7 @@ TEST(BirdFile, SaysWhereABadOneIsBad) {
   bad = good;
   for (const char* key : {"theta_i", "phi_i", "theta_r", "phi_r", "BRDF"}) bad["data"][key]["values"] = json::array();
   bad["data"].erase("adhoc_variables");
+  bad["metadata"].erase("adhoc_section");
   bad["data"].erase("wavelength_i");
   bad["data"].erase("uBRDF");
   EXPECT_THAT(said(bad), HasSubstr("no points"));

@@ -65,8 +65,12 @@ void JsonSchemas::check(const json& schema, const json& value, const std::string
   }
   check_choices(schema, value, at, out);
   if (value.is_object()) check_object(schema, value, at, out);
+  const json first = schema.value("prefixItems", json::array());
+  for (std::size_t n = 0; value.is_array() && n < std::min(first.size(), value.size()); ++n)
+    check(first[n], value[n], at + "/" + std::to_string(n), out);
   if (value.is_array() && schema.contains("items"))
-    for (std::size_t n = 0; n < value.size(); ++n) check(schema["items"], value[n], at + "/" + std::to_string(n), out);
+    for (std::size_t n = first.size(); n < value.size(); ++n)
+      check(schema["items"], value[n], at + "/" + std::to_string(n), out);
   if (!value.is_number()) return;
   const double number = value;
   if (schema.contains("minimum") && number < schema["minimum"].get<double>()) out.push_back(at + ": below minimum");

@@ -10,7 +10,8 @@
 namespace gonio::formats {
 
 /// As much of JSON Schema 2020-12 as the BiRD schema uses, written from the specification: type, required, properties,
-/// additionalProperties, items, enum, const, minimum, maximum, exclusiveMaximum, oneOf, not, if/then/else, $ref.
+/// additionalProperties, items, prefixItems, enum, const, minimum, maximum, exclusiveMaximum, oneOf, not, if/then/else,
+/// $ref.
 class JsonSchemas {
  public:
   /// Every file of the folder that is JSON, known by its $id.

@@ -10,10 +10,10 @@
 namespace gonio::formats {
 
 /// Data and schemas of others, which are not part of the project: in $GONIO_SHARED, else beside the source tree.
-/// A test that finds none says so and checks nothing.
+/// GONIO_SOURCE_DIR is what CMake says: __FILE__ may be relative. A test that finds none says so and checks nothing.
 inline std::filesystem::path shared_folder() {
   if (const char* named = std::getenv("GONIO_SHARED")) return named;
-  return std::filesystem::path(__FILE__).parent_path() / "../../../../shared";
+  return std::filesystem::path(GONIO_SOURCE_DIR) / "../shared";
 }
 
 inline std::optional<std::string> file_content(const std::filesystem::path& path) {
