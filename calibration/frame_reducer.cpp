@@ -8,9 +8,9 @@
 namespace gonio::calibration {
 namespace {
 
-// Chords begin anew in each row, which a processor's own prefetcher does not foresee. A short row is summed in less
-// time than memory takes to answer: hence four.
-constexpr std::size_t kRowsAhead = 4;
+// Rows are summed some at a time, and meanwhile as many of the next are called from memory: chords begin anew in each
+// row, which a processor's own prefetcher does not foresee. All of them stay in the nearest cache.
+constexpr std::size_t kPixelsAtOnce = 4096;
 
 Error refusal(ErrorCode code, std::string seen, std::string limit) {
   return {
@@ -127,12 +127,17 @@ Result<ReducedFrame> FrameReducer::reduce(std::span<const std::uint16_t> pixels,
   }
   PowerSums sums;
   MapSums mapped;
-  for (std::size_t k = 0; k < chords_.size(); ++k) {
-    const Chord& chord = chords_[k];
-    const Chord& soon = chords_[std::min(k + kRowsAhead, chords_.size() - 1)];
-    const auto row = pixels.subspan(chord.first, chord.length);
-    summer_.add(row, pixels.subspan(soon.first, soon.length), sums);
-    if (has_maps_) add_mapped(row_of(row, chord), static_cast<float>(exposure_s), mapped);
+  std::vector<std::span<const std::uint16_t>> rows;
+  rows.reserve(chords_.size());
+  for (const Chord& chord : chords_) rows.push_back(pixels.subspan(chord.first, chord.length));
+  for (std::size_t from = 0; from < rows.size();) {
+    const std::size_t some = std::min(std::max<std::size_t>(kPixelsAtOnce / rows[from].size(), 1), rows.size() - from);
+    const PixelRows later = PixelRows(rows).subspan(from + some);
+    summer_.add(PixelRows(rows).subspan(from, some), later.first(std::min(some, later.size())), sums);
+    for (std::size_t k = from; has_maps_ && k < from + some; ++k) {
+      add_mapped(row_of(rows[k], chords_[k]), static_cast<float>(exposure_s), mapped);
+    }
+    from += some;
   }
   for (const std::size_t at : bad_) summer_.remove(pixels[at], sums);
   ReducedFrame frame{.raw = moments_of(sums), .bad = static_cast<std::uint32_t>(bad_.size()), .reduced = {}};

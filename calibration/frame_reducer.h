@@ -25,9 +25,9 @@ struct ReducedFrame {
   std::optional<ReducedMean> reduced;
 };
 
-/// Condenses frames of one size to the statistics of the aperture, prepared once. One pass over a frame: each row of
-/// the aperture is summed raw, exactly, and then through the maps while it is near. Same bits whenever the same frame
-/// comes, on every machine: integer sums, and floating ones in a fixed order without fused operations. Immutable;
+/// Condenses frames of one size to the statistics of the aperture, prepared once. One pass over a frame: some rows of
+/// the aperture are summed raw, exactly, and then through the maps while they are near. Same bits whenever the same
+/// frame comes, on every machine: integer sums, and floating ones in a fixed order without fused operations. Immutable;
 /// threads: any.
 class FrameReducer {
  public:

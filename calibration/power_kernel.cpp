@@ -32,21 +32,26 @@ void add_block(std::span<const std::uint16_t> pixels, std::uint16_t full_scale, 
   sums.saturated += saturated;
 }
 
-void add_powers_plain(std::span<const std::uint16_t> pixels, std::span<const std::uint16_t> /*soon*/,
-                      std::uint16_t full_scale, PowerSums& sums) {
-  for (std::size_t from = 0; from < pixels.size(); from += kBlock) {
-    add_block(pixels.subspan(from, std::min(kBlock, pixels.size() - from)), full_scale, sums);
+void add_powers_plain(PixelRows rows, PixelRows /*soon*/, std::uint16_t full_scale, PowerSums& sums) {
+  for (const auto row : rows) {
+    for (std::size_t from = 0; from < row.size(); from += kBlock) {
+      add_block(row.subspan(from, std::min(kBlock, row.size() - from)), full_scale, sums);
+    }
+    sums.n += static_cast<std::int64_t>(row.size());
   }
-  sums.n += static_cast<std::int64_t>(pixels.size());
 }
 
 }  // namespace
 
 std::span<const PowerKernel> power_kernels() {
 #if defined(__x86_64__)
-  static constexpr std::array kKernels{PowerKernel{"avx2", add_powers_avx2}, PowerKernel{"plain", add_powers_plain}};
-  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  return std::span(kKernels).subspan(has_avx2 ? 0 : 1);
+  static constexpr std::array kKernels{PowerKernel{"avx512", add_powers_avx512}, PowerKernel{"avx2", add_powers_avx2},
+                                       PowerKernel{"plain", add_powers_plain}};
+  static const std::size_t first = []() -> std::size_t {
+    if (__builtin_cpu_supports("avx2") == 0) return 2;
+    return __builtin_cpu_supports("avx512bw") == 0 || __builtin_cpu_supports("avx512vnni") == 0 ? 1 : 0;
+  }();
+  return std::span(kKernels).subspan(first);
 #else
   static constexpr std::array kKernels{PowerKernel{"plain", add_powers_plain}};
   return kKernels;

@@ -6,9 +6,8 @@ namespace gonio::calibration {
 
 PowerSummer::PowerSummer(std::uint16_t full_scale) : full_scale_(full_scale), kernel_(&power_kernels().front()) {}
 
-void PowerSummer::add(std::span<const std::uint16_t> pixels, std::span<const std::uint16_t> soon,
-                      PowerSums& sums) const {
-  kernel_->add(pixels, soon, full_scale_, sums);
+void PowerSummer::add(PixelRows rows, PixelRows soon, PowerSums& sums) const {
+  kernel_->add(rows, soon, full_scale_, sums);
 }
 
 void PowerSummer::remove(std::uint16_t pixel, PowerSums& sums) const {

@@ -28,13 +28,15 @@ struct PowerSums {
 
 struct PowerKernel;
 
+using PixelRows = std::span<const std::span<const std::uint16_t>>;
+
 /// Sums powers the quickest way that this processor has (`power_kernel.h`).
 class PowerSummer {
  public:
   explicit PowerSummer(std::uint16_t full_scale);
 
-  /// `soon` are pixels that come later, to be called from memory meanwhile.
-  void add(std::span<const std::uint16_t> pixels, std::span<const std::uint16_t> soon, PowerSums& sums) const;
+  /// `soon` are rows that come later, to be called from memory meanwhile.
+  void add(PixelRows rows, PixelRows soon, PowerSums& sums) const;
   /// Takes one pixel out that was added.
   void remove(std::uint16_t pixel, PowerSums& sums) const;
 
