@@ -2,8 +2,20 @@
 
 namespace gonio::daemon {
 
-Reaction reaction_to(ErrorCode code) {
-  switch (code) {
+namespace {
+
+// A radiometer whose endpoint stalled has been cleared by its driver, and may be asked again. A monitor in overload
+// says nothing about the item: the next one would fail likewise.
+bool is_of_a_meter_that_may_be_asked_again(const Error& error) {
+  if (error.code == ErrorCode::DeviceRefused) return error.device == "detector" || error.device == "monitor";
+  return error.code == ErrorCode::Saturated && error.device == "monitor";
+}
+
+}  // namespace
+
+Reaction reaction_to(const Error& error) {
+  if (is_of_a_meter_that_may_be_asked_again(error)) return Reaction::TryAgainThenHold;
+  switch (error.code) {
     case ErrorCode::MotionLate:
     case ErrorCode::OutOfTolerance:
     case ErrorCode::IncompleteData:

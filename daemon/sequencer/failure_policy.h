@@ -15,7 +15,7 @@ enum class Reaction : std::uint8_t {
   GiveUpItem,        ///< trying again cannot help: the plan's on_error at once
   Hold,              ///< at once
 };
-[[nodiscard]] Reaction reaction_to(ErrorCode code);
+[[nodiscard]] Reaction reaction_to(const Error& error);
 /// Which hold a failure stands for: `operator` after a STOP, `door` for the interlock, else `device`.
 [[nodiscard]] HoldName hold_for(ErrorCode code);
 

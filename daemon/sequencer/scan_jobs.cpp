@@ -359,8 +359,8 @@ void Sequencer::Impl::job_failed(const Error& error, Instant now) {
   const bool was_elsewhere = error.code == ErrorCode::OutOfTolerance || error.code == ErrorCode::MotionLate;
   if (was_elsewhere && error.device == "stage") scan->is_position_in_doubt = true;
   const bool is_item = scan->job->kind == Job::Kind::Item;
-  if (is_item && reaction_to(error.code) != Reaction::Hold) return item_failed(error, now);
-  if (scan->job->kind == Job::Kind::Dark && reaction_to(error.code) != Reaction::Hold) return dark_failed(error, now);
+  if (is_item && reaction_to(error) != Reaction::Hold) return item_failed(error, now);
+  if (scan->job->kind == Job::Kind::Dark && reaction_to(error) != Reaction::Hold) return dark_failed(error, now);
   drop_job(now);
   scan->job.reset();
   add_hold(hold_for(error.code), error.device.empty() ? kDaemon : error.device, describe(error), now);
@@ -381,7 +381,7 @@ void Sequencer::Impl::item_failed(const Error& error, Instant now) {
   const Measurement nothing = Measurement::of_dark(0, 0, 1);
   StoreTransaction transaction{
       .at = now, .writes = {attempt}, .events = {event_attempt(attempt, job.measurement ? *job.measurement : nothing)}};
-  const Reaction reaction = reaction_to(error.code);
+  const Reaction reaction = reaction_to(error);
   const int failures = ++scan->failures[job.item];
   if (reaction != Reaction::GiveUpItem && failures <= scan->policy.item_retries) {
     commit(std::move(transaction), {.done = [](const CommitReceipt&, Instant) {}});

@@ -164,7 +164,7 @@ void DriveFace::change_state(std::int64_t control, std::int64_t before, Instant 
 void DriveFace::start(Instant now) {
   if (value("mode", 0) == kHomingMode) {
     stage().home_drive(axis_, now);
-    return;
+    return instrument_.note_motion(now, axis_);
   }
   const std::int64_t target = value("target", 0);
   if (target < value("low_limit", target) || target > value("high_limit", target)) {
@@ -173,6 +173,7 @@ void DriveFace::start(Instant now) {
   const double speed = static_cast<double>(value("speed", 0)) * spec_.speed_scale;
   const double acceleration = static_cast<double>(value("acceleration", 0)) * spec_.acceleration_scale;
   stage().drive_to(axis_, target, {.speed = speed, .acceleration = acceleration}, now);
+  instrument_.note_motion(now, axis_);
 }
 
 }  // namespace gonio::sim

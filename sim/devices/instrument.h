@@ -88,8 +88,8 @@ class Instrument {
     return faults_.strike(moment, scene_time_s(now), now, is_meant);
   }
   [[nodiscard]] const FaultDesk& faults() const { return faults_; }
-  /// The stage has been given a motion: what is meant for its middle is set.
-  void note_motion(Instant now);
+  /// The stage, or one drive of it, has been given a motion: what is meant for its middle is set.
+  void note_motion(Instant now, std::optional<stage::Axis> of_drive = std::nullopt);
 
   /// The stage loses its power and gets it back: home, epoch, latches and counters are gone, the boot counter grows.
   void power_cycle_stage(Instant now);

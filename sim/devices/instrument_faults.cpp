@@ -18,6 +18,7 @@ bool is_of_the_bench(FaultKind kind) {
     case FaultKind::LampOff:
     case FaultKind::MonitorDead:
     case FaultKind::MonitorStuck:
+    case FaultKind::DrivePowerCycle:
       return true;
     default:
       return false;
@@ -77,10 +78,11 @@ void Instrument::act_on_faults(Instant now) {
   while (const auto fault = faults_.take_due(due_s, now)) begin_fault(*fault, now);
 }
 
-void Instrument::note_motion(Instant now) {
+void Instrument::note_motion(Instant now, std::optional<stage::Axis> of_drive) {
   const auto concerns = [&](const PlannedFault& fault) {
     if (!is_of_the_bench(fault.kind)) return false;
     if (!is_of_one_axis(fault.kind)) return stage_.is_moving(now);
+    if (of_drive && *of_drive != fault.axis()) return false;
     const AxisModel& axis = stage_.axis(fault.axis());
     return axis.is_moving(now) && (axis.is_homed() || fault.kind != FaultKind::MissedSteps);
   };
@@ -119,6 +121,9 @@ void Instrument::begin_fault(const PlannedFault& fault, Instant now) {
       break;
     case FaultKind::AxisBlocked:
       stage_.block_axis(fault.axis(), now);
+      break;
+    case FaultKind::DrivePowerCycle:
+      stage_.power_cycle_axis(fault.axis(), now);
       break;
     case FaultKind::LampStep:
       lamp_faults_.step(at_s, fault.factor());

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostErrors = 16;
 constexpr std::string_view kOverload = "9.9E37";
+constexpr std::string_view kNotANumber = "9.91E37";
 constexpr double kLeastPower_w = 1e-15;  // of which a logarithm is shown
 
 constexpr std::string_view kWavelength = "SENSe:CORRection:WAVelength";
@@ -79,7 +80,7 @@ void RadiometerFace::advance_to(Instant now) {
   if (waiting_ != Waiting::Sample) return;
   if (const auto sample = model_.take_sample(now)) {
     waiting_ = Waiting::Nothing;
-    say_sample(*sample);
+    say_sample(*sample, now);
     run_units(now);
   }
 }
@@ -190,9 +191,11 @@ void RadiometerFace::say(std::string_view text) {
   reply_ += text;
 }
 
-void RadiometerFace::say_sample(const RadiometerSample& sample) {
-  if (next_sample_) return say(*std::exchange(next_sample_, std::nullopt));
-  if (sample.is_overload) return say(kOverload);
+void RadiometerFace::say_sample(const RadiometerSample& sample, Instant now) {
+  auto fault = std::exchange(next_sample_, std::nullopt);
+  if (const auto kind = model_.strike(FaultMoment::Sample, now)) fault = radiometer_fault_of(*kind);
+  if (fault == RadiometerFault::NotANumber) return say(kNotANumber);
+  if (fault == RadiometerFault::Overload || sample.is_overload) return say(kOverload);
   const double shown = is_in_dbm_ ? 10.0 * std::log10(std::max(sample.power_w, kLeastPower_w) / 1e-3) : sample.power_w;
   say(fmt::format("{:.9E}", shown));
 }

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "protocol/usbtmc/scpi.h"
+#include "sim/devices/radiometer_fault.h"
 #include "sim/devices/radiometer_model.h"
 
 namespace gonio::sim {
@@ -33,8 +34,11 @@ class RadiometerFace {
   [[nodiscard]] std::string take_output(std::size_t bytes);
   /// For faults: there is this to be said.
   void say_again(std::string_view text) { output_ = text; }
-  /// For faults: what the next sample says instead of its value.
-  void say_next_sample(std::string_view text) { next_sample_ = text; }
+  /// For faults: the next sample says no value.
+  void spoil_next_sample(RadiometerFault fault) { next_sample_ = fault; }
+  /// A reply is about to be sent: the fault that strikes it.
+  [[nodiscard]] std::optional<FaultKind> strike_reply(Instant now) { return model_.strike(FaultMoment::Reply, now); }
+  [[nodiscard]] bool is_unplugged(Instant now) const { return model_.is_unplugged(now); }
 
   [[nodiscard]] std::uint8_t status_byte() const;
   /// Device clear: drops input, output and what is under way; settings and error queue stay.
@@ -52,7 +56,7 @@ class RadiometerFace {
   void set_unit(std::string_view argument);
   void begin_sample(Instant now);
   void say(std::string_view text);
-  void say_sample(const RadiometerSample& sample);
+  void say_sample(const RadiometerSample& sample, Instant now);
   void add_error(int code, std::string_view text);
   [[nodiscard]] std::string take_error();
 
@@ -65,7 +69,7 @@ class RadiometerFace {
   Waiting waiting_ = Waiting::Nothing;
   bool is_zeroing_ = false;
   bool is_in_dbm_ = false;
-  std::optional<std::string> next_sample_;
+  std::optional<RadiometerFault> next_sample_;  ///< what spoils it
 };
 
 }  // namespace gonio::sim

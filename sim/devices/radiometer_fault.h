@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
-#include <string_view>
+
+#include "sim/faults/fault_table.h"
 
 namespace gonio::sim {
 
@@ -18,25 +18,26 @@ enum class RadiometerFault : std::uint8_t {
   Overload,         ///< 9.9E37
 };
 
-struct NamedRadiometerFault {
-  std::string_view name;
-  RadiometerFault fault;
-};
-/// As scenes and control ports say them.
-inline constexpr std::array<NamedRadiometerFault, 7> kRadiometerFaults{
-    {{"stall", RadiometerFault::Stall},
-     {"silence", RadiometerFault::Silence},
-     {"torn-reply", RadiometerFault::TornReply},
-     {"duplicated-reply", RadiometerFault::DuplicatedReply},
-     {"stale-tag", RadiometerFault::StaleTag},
-     {"not-a-number", RadiometerFault::NotANumber},
-     {"overload", RadiometerFault::Overload}}};
-
-[[nodiscard]] constexpr std::optional<RadiometerFault> radiometer_fault_from_name(std::string_view name) {
-  for (const NamedRadiometerFault& named : kRadiometerFaults) {
-    if (named.name == name) return named.fault;
+/// What a fault of the table does to a reply or a sample; nothing for all others.
+[[nodiscard]] constexpr std::optional<RadiometerFault> radiometer_fault_of(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::RadiometerStall:
+      return RadiometerFault::Stall;
+    case FaultKind::RadiometerReplyLost:
+      return RadiometerFault::Silence;
+    case FaultKind::RadiometerReplyTorn:
+      return RadiometerFault::TornReply;
+    case FaultKind::RadiometerReplyDuplicated:
+      return RadiometerFault::DuplicatedReply;
+    case FaultKind::RadiometerReplyStale:
+      return RadiometerFault::StaleTag;
+    case FaultKind::RadiometerNotANumber:
+      return RadiometerFault::NotANumber;
+    case FaultKind::RadiometerOverload:
+      return RadiometerFault::Overload;
+    default:
+      return std::nullopt;
   }
-  return std::nullopt;
 }
 
 }  // namespace gonio::sim

@@ -154,4 +154,19 @@ std::optional<bool> RadiometerModel::take_zero(Instant now) {
   return true;
 }
 
+std::optional<FaultKind> RadiometerModel::strike(FaultMoment moment, Instant now) {
+  const auto fault = instrument_.strike(moment, now, [this](const PlannedFault& f) { return is_meant(f); });
+  return fault ? std::optional(fault->kind) : std::nullopt;
+}
+
+bool RadiometerModel::is_unplugged(Instant now) const {
+  const PlannedFault* fault = instrument_.faults().active(FaultKind::RadiometerUnplugged, now);
+  return fault != nullptr && is_meant(*fault);
+}
+
+bool RadiometerModel::is_meant(const PlannedFault& fault) const {
+  const FaultRole role = spec_.place == RadiometerPlace::Detector ? FaultRole::Detector : FaultRole::Monitor;
+  return traits(fault.kind).device == FaultDevice::Radiometer && fault.role() == role;
+}
+
 }  // namespace gonio::sim

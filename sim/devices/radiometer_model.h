@@ -49,6 +49,11 @@ class RadiometerModel {
   /// The finished zero, once: false when there was too much light, and the zero is as it was.
   [[nodiscard]] std::optional<bool> take_zero(Instant now);
 
+  /// Whether a fault that is meant for this radiometer strikes at this moment.
+  [[nodiscard]] std::optional<FaultKind> strike(FaultMoment moment, Instant now);
+  /// Whether its cable is out, by a fault that stands.
+  [[nodiscard]] bool is_unplugged(Instant now) const;
+
   /// As switched on: largest range, one average, no zero.
   void power_up();
 
@@ -62,6 +67,7 @@ class RadiometerModel {
   void change_range(std::size_t range, Instant now);
 
   [[nodiscard]] double gain_of(std::size_t range) const;
+  [[nodiscard]] bool is_meant(const PlannedFault& fault) const;
 
   Instrument& instrument_;
   std::size_t collector_;  ///< of the instrument

@@ -69,12 +69,22 @@ Result<void> take_number(const FaultWish& wish, const std::string& key, double v
   const FaultTraits& kind = traits(fault.kind);
   const FaultParameterTraits* parameter = parameter_of(kind, key);
   if (parameter == nullptr) return failure(refusal(ErrorCode::UnknownKey, wish, key, "not known here", keys_of(kind)));
-  const bool is_name = parameter->parameter == FaultParameter::Axis || parameter->parameter == FaultParameter::Exchange;
+  const bool is_name = parameter->parameter == FaultParameter::Axis ||
+                       parameter->parameter == FaultParameter::Exchange || parameter->parameter == FaultParameter::Role;
   if (is_name) return failure(refusal(ErrorCode::InvalidInput, wish, key, "a number", std::string(parameter->what)));
   const bool is_count = parameter->parameter == FaultParameter::Code || parameter->parameter == FaultParameter::Packets;
   const auto taken = in_range(wish, key, value, parameter->least, parameter->most, is_count);
   if (!taken) return failure(taken.error());
   fault.values[parameter->parameter] = *taken;
+  return {};
+}
+
+Result<void> take_one_of(const FaultWish& wish, const std::string& key, const std::string& value,
+                         std::span<const std::string_view> names, double& taken) {
+  const auto found = std::ranges::find(names, value);
+  if (found == names.end())
+    return failure(refusal(ErrorCode::InvalidInput, wish, key, '"' + value + '"', joined(names)));
+  taken = static_cast<double>(found - names.begin());
   return {};
 }
 
@@ -92,11 +102,10 @@ Result<void> take_name(const FaultWish& wish, const std::string& key, const std:
     return {};
   }
   if (parameter->parameter == FaultParameter::Exchange) {
-    const auto* exchange = std::ranges::find(kExchangeNames, value);
-    if (exchange == kExchangeNames.end())
-      return failure(refusal(ErrorCode::InvalidInput, wish, key, '"' + value + '"', joined(kExchangeNames)));
-    fault.values[FaultParameter::Exchange] = static_cast<double>(exchange - kExchangeNames.begin());
-    return {};
+    return take_one_of(wish, key, value, kExchangeNames, fault.values[FaultParameter::Exchange]);
+  }
+  if (parameter->parameter == FaultParameter::Role) {
+    return take_one_of(wish, key, value, kFaultRoleNames, fault.values[FaultParameter::Role]);
   }
   return failure(refusal(ErrorCode::InvalidInput, wish, key, '"' + value + '"', "a number"));
 }
@@ -109,6 +118,10 @@ stage::Axis PlannedFault::axis() const {
 
 ExchangeKind PlannedFault::exchange() const {
   return static_cast<ExchangeKind>(static_cast<int>(values[FaultParameter::Exchange]));
+}
+
+FaultRole PlannedFault::role() const {
+  return static_cast<FaultRole>(static_cast<int>(values[FaultParameter::Role]));
 }
 
 std::uint8_t PlannedFault::code() const {
@@ -144,10 +157,10 @@ std::string fault_list() {
   std::string text;
   for (const FaultTraits& fault : kFaultTable) {
     text +=
-        fmt::format("{:<24} {:<7} {:<9} {}\n", fault.name, kFaultDeviceNames[static_cast<std::size_t>(fault.device)],
+        fmt::format("{:<28} {:<10} {:<9} {}\n", fault.name, kFaultDeviceNames[static_cast<std::size_t>(fault.device)],
                     kFaultMomentNames[static_cast<std::size_t>(fault.moment)], fault.what);
     for (const FaultParameterTraits& p : kFaultParameterTable) {
-      if (fault.parameters.has(p.parameter)) text += fmt::format("{:26}{}: {}\n", "", p.key, p.what);
+      if (fault.parameters.has(p.parameter)) text += fmt::format("{:30}{}: {}\n", "", p.key, p.what);
     }
   }
   return text;

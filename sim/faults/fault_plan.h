@@ -38,6 +38,7 @@ struct PlannedFault {
 
   [[nodiscard]] stage::Axis axis() const;
   [[nodiscard]] ExchangeKind exchange() const;
+  [[nodiscard]] FaultRole role() const;
   [[nodiscard]] double by() const { return values[FaultParameter::By]; }
   [[nodiscard]] double factor() const { return 1.0 + values[FaultParameter::ByPercent] / 100.0; }
   [[nodiscard]] std::uint8_t code() const;

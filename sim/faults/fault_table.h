@@ -43,8 +43,17 @@ enum class FaultKind : std::uint8_t {
   LampOff,
   MonitorDead,
   MonitorStuck,
+  DrivePowerCycle,
+  RadiometerStall,
+  RadiometerReplyLost,
+  RadiometerReplyTorn,
+  RadiometerReplyDuplicated,
+  RadiometerReplyStale,
+  RadiometerNotANumber,
+  RadiometerOverload,
+  RadiometerUnplugged,
 };
-inline constexpr std::size_t kFaultKinds = static_cast<std::size_t>(FaultKind::MonitorStuck) + 1;
+inline constexpr std::size_t kFaultKinds = static_cast<std::size_t>(FaultKind::RadiometerUnplugged) + 1;
 
 /// Whose fault it is.
 enum class FaultDevice : std::uint8_t { Stage, Axis, Camera, Radiometer, Lamp };
@@ -56,16 +65,23 @@ enum class FaultMoment : std::uint8_t {
   Move,      ///< a motion that the stage has accepted; the fault comes half way through it
   Exposure,  ///< a trigger of the camera; on the bench, the middle of the exposure
   Frame,     ///< a frame that is ready to be sent
+  Reply,     ///< a reply that a radiometer is about to send
+  Sample,    ///< a value that a radiometer is about to say
 };
-inline constexpr std::array<std::string_view, 4> kFaultMomentNames{"exchange", "move", "exposure", "frame"};
+inline constexpr std::array<std::string_view, 6> kFaultMomentNames{"exchange", "move",  "exposure",
+                                                                   "frame",    "reply", "sample"};
 
 /// Which requests on the stage's wire a fault is meant for.
 enum class ExchangeKind : std::uint8_t { Look, Motion, Shutters, Heartbeat, Any };
 inline constexpr std::array<std::string_view, 5> kExchangeNames{"look", "motion", "shutters", "heartbeat", "any"};
 
+/// Which radiometer a fault is meant for.
+enum class FaultRole : std::uint8_t { Detector, Monitor };
+inline constexpr std::array<std::string_view, 2> kFaultRoleNames{"detector", "monitor"};
+
 /// What can be said about a fault beyond its name. Times are wall time: they meet the patience of a daemon.
-enum class FaultParameter : std::uint8_t { Axis, Exchange, By, ByPercent, Code, Packets, LateWallS, ForWallS };
-inline constexpr std::size_t kFaultParameters = 8;
+enum class FaultParameter : std::uint8_t { Axis, Exchange, By, ByPercent, Code, Packets, LateWallS, ForWallS, Role };
+inline constexpr std::size_t kFaultParameters = 9;
 
 struct FaultParameterTraits {
   FaultParameter parameter;
@@ -86,6 +102,7 @@ inline constexpr std::array<FaultParameterTraits, kFaultParameters> kFaultParame
     {FaultParameter::Packets, "packets", 2.0, 1.0, 100000.0, "how many, from the second on"},
     {FaultParameter::LateWallS, "late_wall_s", 1.5, 0.0, 60.0, "how late, seconds of wall time"},
     {FaultParameter::ForWallS, "for_wall_s", kUntilOff, 0.0, 86400.0, "how long, seconds of wall time; else until off"},
+    {FaultParameter::Role, "role", 0.0, 0.0, 1.0, "of the radiometer: detector (unless said), monitor"},
 }};
 
 /// A set of parameters.
@@ -376,6 +393,78 @@ inline constexpr std::array<FaultTraits, kFaultKinds> kFaultTable{{
      true,
      {detail::P::ForWallS},
      "the lamp's monitor goes on saying what it said last"},
+    {FaultKind::DrivePowerCycle,
+     "drive-power-cycle",
+     detail::D::Axis,
+     detail::M::Move,
+     true,
+     false,
+     {detail::P::Axis},
+     "the drive of one axis loses its power and boots: its home is gone (a stage of drives)"},
+    {FaultKind::RadiometerStall,
+     "radiometer-stall",
+     detail::D::Radiometer,
+     detail::M::Reply,
+     false,
+     false,
+     {detail::P::Role},
+     "Bulk-IN halts instead of the reply"},
+    {FaultKind::RadiometerReplyLost,
+     "radiometer-reply-lost",
+     detail::D::Radiometer,
+     detail::M::Reply,
+     false,
+     false,
+     {detail::P::Role},
+     "the reply never comes"},
+    {FaultKind::RadiometerReplyTorn,
+     "radiometer-reply-torn",
+     detail::D::Radiometer,
+     detail::M::Reply,
+     false,
+     false,
+     {detail::P::Role},
+     "half of the reply's bytes come"},
+    {FaultKind::RadiometerReplyDuplicated,
+     "radiometer-reply-duplicated",
+     detail::D::Radiometer,
+     detail::M::Reply,
+     false,
+     false,
+     {detail::P::Role},
+     "the reply comes, and is ready to be fetched once more"},
+    {FaultKind::RadiometerReplyStale,
+     "radiometer-reply-stale",
+     detail::D::Radiometer,
+     detail::M::Reply,
+     false,
+     false,
+     {detail::P::Role},
+     "the reply comes under the tag of the request before"},
+    {FaultKind::RadiometerNotANumber,
+     "radiometer-not-a-number",
+     detail::D::Radiometer,
+     detail::M::Sample,
+     false,
+     false,
+     {detail::P::Role},
+     "the value is \"not a number\", 9.91E37"},
+    {FaultKind::RadiometerOverload,
+     "radiometer-overload",
+     detail::D::Radiometer,
+     detail::M::Sample,
+     false,
+     false,
+     {detail::P::Role},
+     "the value is an overload, 9.9E37"},
+    {FaultKind::RadiometerUnplugged,
+     "radiometer-unplugged",
+     detail::D::Radiometer,
+     detail::M::Reply,
+     true,
+     true,
+     {detail::P::Role, detail::P::ForWallS},
+     "its cable is out; back, it is as after a power cycle, under another address"},
 }};
 
 [[nodiscard]] constexpr const FaultTraits& traits(FaultKind kind) {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "sim/goniosim/control_server.h"
+#include "sim/scene/check_fault.h"
 
 namespace gonio::sim {
 namespace {
@@ -108,6 +109,8 @@ json report_of(const PlannedFault& fault) {
       report[key] = stage::axis_name(fault.axis());
     else if (p.parameter == FaultParameter::Exchange)
       report[key] = kExchangeNames[static_cast<std::size_t>(fault.exchange())];
+    else if (p.parameter == FaultParameter::Role)
+      report[key] = kFaultRoleNames[static_cast<std::size_t>(fault.role())];
     else if (fault.values[p.parameter] < kUntilOff)
       report[key] = fault.values[p.parameter];
   }
@@ -132,8 +135,11 @@ json set_fault(const json& line, LiveInstrument& instrument, const StageWire& st
   if (!stage.can_have(fault->kind)) {
     return refusal(fmt::format("the stage's wire of this run has no \"{}\"", traits(fault->kind).name));
   }
+  const bool is_on = line.value("on", true);
+  const auto fits = check_fault(*fault, instrument.scene());
+  if (is_on && !fits) return refusal(describe(fits.error()));
   return instrument.with([&](LiveInstrument::Parts& parts) -> json {
-    if (!line.value("on", true)) {
+    if (!is_on) {
       parts.instrument.end_fault(fault->kind, parts.now);
       return {{"ok", true}, {"off", traits(fault->kind).name}};
     }

@@ -29,24 +29,25 @@ bool send_all(int socket, const std::string& text) {
 }  // namespace
 
 Result<std::unique_ptr<ControlServer>> ControlServer::start(const std::string& path, LiveInstrument& instrument,
-                                                            const StageWire& stage) {
+                                                            const StageWire& stage, UsbPorts* usb) {
   auto listener = listen_unix(path);
   if (!listener) return failure(std::move(listener).error());
   auto wake_up = make_wake_up();
   if (!wake_up) return failure(std::move(wake_up).error());
   std::unique_ptr<ControlServer> server(
-      new ControlServer(path, *std::move(listener), *std::move(wake_up), instrument, stage));
+      new ControlServer(path, *std::move(listener), *std::move(wake_up), instrument, stage, usb));
   server->thread_ = std::jthread([s = server.get()](const std::stop_token& stop) { s->run(stop); });
   return server;
 }
 
 ControlServer::ControlServer(std::string path, FileDescriptor listener, FileDescriptor wake_up,
-                             LiveInstrument& instrument, const StageWire& stage)
+                             LiveInstrument& instrument, const StageWire& stage, UsbPorts* usb)
     : path_(std::move(path)),
       listener_(std::move(listener)),
       wake_up_(std::move(wake_up)),
       instrument_(instrument),
-      stage_(stage) {}
+      stage_(stage),
+      usb_(usb) {}
 
 ControlServer::~ControlServer() {
   thread_.request_stop();
@@ -85,6 +86,7 @@ void ControlServer::receive(Client& client) {
   client.received.append(bytes.data(), static_cast<std::size_t>(n));
   for (std::size_t end = client.received.find('\n'); end != std::string::npos; end = client.received.find('\n')) {
     const std::string answer = answer_control(client.received.substr(0, end), instrument_, stage_) + "\n";
+    if (usb_ != nullptr) usb_->look_at_faults();
     client.received.erase(0, end + 1);
     if (send_all(client.socket.get(), answer)) continue;
     client.is_gone = true;

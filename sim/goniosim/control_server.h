@@ -9,6 +9,7 @@
 #include "sim/wires/live_instrument.h"
 #include "sim/wires/sockets.h"
 #include "sim/wires/stage_wire.h"
+#include "sim/wires/usb_ports.h"
 
 namespace gonio::sim {
 
@@ -22,9 +23,9 @@ namespace gonio::sim {
 /// A refused line is answered {"ok":false,"error":"..."}. One thread; threads of callers: any.
 class ControlServer {
  public:
-  /// Both must outlive it. Errors: PortBusy, InvalidInput, Internal.
+  /// All must outlive it; `usb` may be null. Errors: PortBusy, InvalidInput, Internal.
   [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const std::string& path, LiveInstrument& instrument,
-                                                                    const StageWire& stage);
+                                                                    const StageWire& stage, UsbPorts* usb = nullptr);
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
@@ -36,7 +37,7 @@ class ControlServer {
     bool is_gone = false;
   };
   ControlServer(std::string path, FileDescriptor listener, FileDescriptor wake_up, LiveInstrument& instrument,
-                const StageWire& stage);
+                const StageWire& stage, UsbPorts* usb);
   void run(const std::stop_token& stop);
   void receive(Client& client);
 
@@ -45,6 +46,7 @@ class ControlServer {
   FileDescriptor wake_up_;
   LiveInstrument& instrument_;
   const StageWire& stage_;
+  UsbPorts* usb_;
   std::list<Client> clients_;
   std::jthread thread_;  // last: it uses all of the above
 };

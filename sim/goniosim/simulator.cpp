@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "sim/scene/check_fault.h"
 #include "sim/wires/modbus_server.h"
 #include "sim/wires/rtu_server.h"
 
@@ -33,6 +34,7 @@ Simulator::Simulator(Scene scene, StateFolder folder, InstrumentMemory memory, E
 
 Result<std::unique_ptr<Simulator>> Simulator::start(Scene scene, const std::string& state_folder,
                                                     const WireWishes& wishes, const Clock& clock) {
+  for (const PlannedFault& fault : scene.faults) GONIO_TRY(check_fault(fault, scene));
   auto folder = StateFolder::open(state_folder);
   if (!folder) return failure(std::move(folder).error());
   folder->remove_ready();
@@ -77,7 +79,7 @@ Result<void> Simulator::bind(const SimulatorState& last, const WireWishes& wishe
   GONIO_TRY(bind_stage(last, wishes));
   GONIO_TRY(bind_camera(wishes.camera_address.empty() ? last.camera_address : wishes.camera_address));
   GONIO_TRY(plug_radiometers(wishes));
-  auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_);
+  auto control = ControlServer::start(folder_.control_socket(), instrument_, *stage_, usb_.get());
   if (!control) return failure(std::move(control).error());
   control_ = *std::move(control);
   return {};

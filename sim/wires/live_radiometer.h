@@ -25,6 +25,13 @@ class LiveRadiometer {
     return instrument_.with([&](LiveInstrument::Parts& parts) { return std::forward<F>(f)(function_, parts.now); });
   }
 
+  /// Runs `f(Instrument&, Instant now)` alone.
+  template <class F>
+  auto with_instrument(F&& f) {
+    return instrument_.with(
+        [&](LiveInstrument::Parts& parts) { return std::forward<F>(f)(parts.instrument, parts.now); });
+  }
+
   [[nodiscard]] const Clock& clock() const { return instrument_.clock(); }
 
  private:

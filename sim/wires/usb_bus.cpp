@@ -33,6 +33,8 @@ constexpr std::size_t kSetupBytes = 8;
 constexpr std::uint8_t kDirectionIn = 0x80;
 constexpr int kOneSlotBytes = 4096;  // the smallest pipe: one page
 constexpr int kFirstAddress = 2;     // 1 is the root hub
+constexpr Duration kFaultLook = std::chrono::milliseconds(50);
+constexpr Duration kNothingToDo = std::chrono::hours(1);
 constexpr const char* kPreload = "libumockdev-preload.so.0";
 
 struct Unref {
@@ -129,9 +131,9 @@ struct UsbBus::Port {
     clockwork = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
   ~Port() {
-    unplug();
     clockwork.request_stop();
-    clockwork.join();
+    clockwork.join();  // first: it may be putting the cable back
+    unplug();
   }
   Port(const Port&) = delete;
   Port& operator=(const Port&) = delete;
@@ -158,6 +160,10 @@ struct UsbBus::Port {
   void finish(Urb urb, int status);
   void forget_the_dead();
   void run(const std::stop_token& stop);
+  void look_at_faults();
+  [[nodiscard]] bool has_to_follow_faults();
+  void follow_faults(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] Duration patience() const;
 
   System& system;
   LiveRadiometer& radiometer;
@@ -166,6 +172,9 @@ struct UsbBus::Port {
   std::mutex mutex;  ///< over all below; the instrument's is taken inside of it
   std::condition_variable_any something_due;
   std::optional<Instant> due;
+  bool has_faults_to_follow = false;  ///< one is armed, or holds the cable out: look now and then
+  bool looks_at_faults = true;        ///< at once
+  bool is_pulled = false;             ///< by a fault
   int address = 0;
   std::string node_name;
   Node node;
@@ -371,6 +380,10 @@ void UsbBus::Port::pump() {
   // What ended since the first line is due in the past, and comes with the next round.
   const auto next = radiometer.with([](const UsbtmcFunction& f, Instant) { return f.due(); });
   if (std::exchange(due, next) != next && next) something_due.notify_one();
+  const bool is_out = radiometer.with([](const UsbtmcFunction& f, Instant now) { return f.is_unplugged(now); });
+  if (is_out == is_pulled) return;
+  looks_at_faults = true;
+  something_due.notify_one();
 }
 
 void UsbBus::Port::finish(Urb urb, int status) {
@@ -420,16 +433,50 @@ void UsbBus::Port::forget_the_dead() {
   if (finished.empty()) node.set_ready(false);
 }
 
+void UsbBus::Port::look_at_faults() {
+  const std::lock_guard lock(mutex);
+  looks_at_faults = true;
+  something_due.notify_one();
+}
+
+bool UsbBus::Port::has_to_follow_faults() {
+  return radiometer.with_instrument([](const Instrument& instrument, Instant now) {
+    const FaultCount count = instrument.faults().count(FaultKind::RadiometerUnplugged, now);
+    return count.armed > 0 || count.is_active;
+  });
+}
+
+// Pulls the cable or puts it back, as the faults have it. What cannot be put back is tried again with the next look.
+void UsbBus::Port::follow_faults(std::unique_lock<std::mutex>& lock) {
+  looks_at_faults = false;
+  has_faults_to_follow = has_to_follow_faults() || is_pulled;
+  const bool is_out = radiometer.with([](const UsbtmcFunction& f, Instant now) { return f.is_unplugged(now); });
+  if (is_out == is_pulled || (is_out && !is_there)) return;
+  lock.unlock();
+  bool is_done = true;
+  if (is_out) {
+    unplug();
+  } else {
+    is_done = plug().has_value();
+  }
+  lock.lock();
+  if (is_done) is_pulled = is_out;
+}
+
+Duration UsbBus::Port::patience() const {
+  Duration most = has_faults_to_follow ? kFaultLook : kNothingToDo;
+  if (due) most = std::min(most, *due - radiometer.clock().now());
+  return most;
+}
+
 void UsbBus::Port::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex);
   while (!stop.stop_requested()) {
-    if (!due) {
-      something_due.wait(lock, stop, [&] { return due.has_value(); });
-      continue;
-    }
-    const Instant until = *due;
-    something_due.wait_for(lock, stop, until - radiometer.clock().now(), [&] { return due != until; });
-    if (due == until) pump();
+    const std::optional<Instant> until = due;
+    const bool is_woken =
+        something_due.wait_for(lock, stop, patience(), [&] { return due != until || looks_at_faults; });
+    if (!is_woken && due && due == until && radiometer.clock().now() >= *due) pump();
+    if (looks_at_faults || has_faults_to_follow) follow_faults(lock);
   }
 }
 
@@ -445,6 +492,9 @@ Result<void> UsbBus::plug(std::size_t port) {
 }
 void UsbBus::unplug(std::size_t port) {
   ports_.at(port)->unplug();
+}
+void UsbBus::look_at_faults() {
+  for (const auto& port : ports_) port->look_at_faults();
 }
 
 std::map<std::string, std::string> UsbBus::environment() const {

@@ -28,6 +28,7 @@ class UsbBus final : public UsbPorts {
 
   [[nodiscard]] Result<void> plug(std::size_t port) override;
   void unplug(std::size_t port) override;
+  void look_at_faults() override;
   /// The only port there is.
   [[nodiscard]] Result<void> plug() { return plug(0); }
   void unplug() { unplug(0); }

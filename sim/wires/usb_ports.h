@@ -22,6 +22,8 @@ class UsbPorts {
   [[nodiscard]] virtual Result<void> plug(std::size_t port) = 0;
   /// It is gone; transfers under way end so. Does nothing when it is.
   virtual void unplug(std::size_t port) = 0;
+  /// A fault may have been armed or ended that pulls a cable or puts it back.
+  virtual void look_at_faults() = 0;
   /// What the environment of a program must have besides this process' own to find the devices.
   [[nodiscard]] virtual std::map<std::string, std::string> environment() const = 0;
 };

@@ -173,13 +173,13 @@ UsbOutcome UsbtmcFunction::bulk_out(std::span<const std::uint8_t> bytes, Instant
 }
 
 void UsbtmcFunction::inject(RadiometerFault fault, unsigned replies_before) {
-  if (fault == RadiometerFault::NotANumber) return face_.say_next_sample("9.91E37");
-  if (fault == RadiometerFault::Overload) return face_.say_next_sample("9.9E37");
+  if (fault == RadiometerFault::NotANumber || fault == RadiometerFault::Overload) return face_.spoil_next_sample(fault);
   fault_ = fault;
   replies_before_fault_ = replies_before;
 }
 
-std::optional<RadiometerFault> UsbtmcFunction::fault_of_this_reply() {
+std::optional<RadiometerFault> UsbtmcFunction::fault_of_this_reply(Instant now) {
+  if (const auto kind = face_.strike_reply(now)) return radiometer_fault_of(*kind);
   if (!fault_) return std::nullopt;
   if (replies_before_fault_ > 0) {
     --replies_before_fault_;
@@ -193,7 +193,8 @@ UsbAnswer UsbtmcFunction::bulk_in(std::size_t most, Instant now) {
   if (is_in_halted_) return stalled();
   if (std::exchange(ends_transfer_, false)) return done({});
   if (is_silent_ || !request_ || face_.output().empty()) return not_ready();
-  const auto fault = fault_of_this_reply();
+  const auto fault = fault_of_this_reply(now);
+  if (face_.is_unplugged(now)) return not_ready();  // the port pulls it
   if (fault == RadiometerFault::Stall) {
     is_in_halted_ = true;
     return stalled();

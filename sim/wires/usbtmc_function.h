@@ -50,6 +50,9 @@ class UsbtmcFunction {
   /// When something that is not ready now may be.
   [[nodiscard]] std::optional<Instant> due() const { return face_.due(); }
 
+  /// Whether a fault holds its cable out.
+  [[nodiscard]] bool is_unplugged(Instant now) const { return face_.is_unplugged(now); }
+
   /// Lets finish what is due.
   void advance_to(Instant now) { face_.advance_to(now); }
   /// As plugged in anew.
@@ -68,7 +71,7 @@ class UsbtmcFunction {
   [[nodiscard]] std::vector<std::uint8_t> status_answer(std::uint8_t tag);
   [[nodiscard]] std::vector<std::uint8_t> abort_bulk_in(std::uint8_t tag);
   void clear();
-  [[nodiscard]] std::optional<RadiometerFault> fault_of_this_reply();
+  [[nodiscard]] std::optional<RadiometerFault> fault_of_this_reply(Instant now);
   [[nodiscard]] UsbAnswer reply(std::size_t most, std::optional<RadiometerFault> fault);
 
   RadiometerFace& face_;

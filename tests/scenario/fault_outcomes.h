@@ -22,9 +22,9 @@ struct FaultRow {
   std::string_view name;  ///< of sim/faults/fault_table.h
   std::string_view keys;  ///< of the control socket, beside the name
   FaultOutcome outcome;
-  std::string_view hold;  ///< the hold's name
-  std::string_view says;  ///< what stands in the attempt's error, the skip's reason or the hold's
-  std::string_view wire = "tcp";
+  std::string_view hold;                ///< the hold's name
+  std::string_view says;                ///< what stands in the attempt's error, the skip's reason or the hold's
+  std::string_view instrument = "tcp";  ///< or "rtu", "drives" (on TCP), "usb" (TCP and two radiometers)
 };
 
 /// The operators' table in docs/faults.md has a row for each.
@@ -72,6 +72,30 @@ inline constexpr std::array kFaultRows{
     FaultRow{"SerialReplyStale", "reply-stale", R"("after":1)", FaultOutcome::Unnoticed, "", "", "rtu"},
     FaultRow{"SerialReplyLate", "reply-late", R"("after":1)", FaultOutcome::Unnoticed, "", "", "rtu"},
     FaultRow{"SerialReplyWrongUnit", "reply-wrong-unit", R"("after":1)", FaultOutcome::Unnoticed, "", "", "rtu"},
+    FaultRow{"DrivePowerCycle", "drive-power-cycle", R"("after":0)", FaultOutcome::Held, "device", "boot counter",
+             "drives"},
+    FaultRow{"RadiometerStall", "radiometer-stall", R"("after":1)", FaultOutcome::Retried, "", "device-refused", "usb"},
+    FaultRow{"RadiometerReplyLost", "radiometer-reply-lost", R"("after":1)", FaultOutcome::Retried, "", "no reply",
+             "usb"},
+    FaultRow{"RadiometerReplyTorn", "radiometer-reply-torn", R"("after":1)", FaultOutcome::Retried, "",
+             "incomplete-data", "usb"},
+    FaultRow{"RadiometerReplyDuplicated", "radiometer-reply-duplicated", R"("after":1)", FaultOutcome::Retried, "",
+             "a reply that nobody asked for", "usb"},
+    FaultRow{"RadiometerReplyStale", "radiometer-reply-stale", R"("after":1)", FaultOutcome::Retried, "", "stale-data",
+             "usb"},
+    FaultRow{"RadiometerNotANumber", "radiometer-not-a-number", R"("after":1)", FaultOutcome::Retried, "", "9.91E37",
+             "usb"},
+    FaultRow{"RadiometerOverload", "radiometer-overload", R"("after":1)", FaultOutcome::Unnoticed, "", "", "usb"},
+    FaultRow{"RadiometerUnplugged", "radiometer-unplugged", R"("after":1)", FaultOutcome::Held, "device", "unreachable",
+             "usb"},
+    FaultRow{"MonitorReplyLost", "radiometer-reply-lost", R"("after":1,"role":"monitor")", FaultOutcome::Retried, "",
+             "monitor", "usb"},
+    FaultRow{"MonitorNotANumber", "radiometer-not-a-number", R"("after":1,"role":"monitor")", FaultOutcome::Retried, "",
+             "9.91E37", "usb"},
+    FaultRow{"MonitorOverload", "radiometer-overload", R"("after":1,"role":"monitor")", FaultOutcome::Retried, "",
+             "saturated", "usb"},
+    FaultRow{"MonitorUnplugged", "radiometer-unplugged", R"("after":1,"role":"monitor")", FaultOutcome::Held, "device",
+             "unreachable", "usb"},
 };
 
 }  // namespace gonio::test

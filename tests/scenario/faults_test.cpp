@@ -39,21 +39,38 @@ double truth_per_sr(const json& value) {
   return 0.9 / std::numbers::pi * cosine("theta_i_deg") * cosine("theta_r_deg");
 }
 
+// Beside the stage on TCP, in the places of the camera and of the lamp's monitor.
+constexpr const char* kMeters =
+    "[[radiometers]]\nrole = \"detector\"\nserial = \"SIM-PM-01\"\nranges_w = [1e-4, 1e-3, 1e-2]\naverage_s = 0.02\n"
+    "zero_s = 1.0\nnoise = 1e-4\nsamples = 4\n"
+    "[[radiometers]]\nrole = \"monitor\"\nserial = \"SIM-PM-02\"\nranges_w = [1e-3, 1e-2]\naverage_s = 0.02\n"
+    "noise = 2e-5\n";
+
+SceneOptions scene_of(const std::string& instrument) {
+  SceneOptions scene = kScene;
+  if (instrument == "usb") {
+    scene.more = kMeters;
+  } else if (instrument == "drives") {
+    scene.stage = instrument;
+  } else {
+    scene.stage_wire = instrument;
+  }
+  return scene;
+}
+
 /// One instrument and one daemon for many faults, one scan a fault; new ones after a fault that went wrong.
 class Faults : public testing::TestWithParam<FaultRow> {
  protected:
-  static Bench& bench(const std::string& wire) {
-    std::unique_ptr<Bench>& bench = benches_[wire];
+  static Bench& bench(const std::string& instrument) {
+    std::unique_ptr<Bench>& bench = benches_[instrument];
     if (bench) return *bench;
-    SceneOptions scene = kScene;
-    scene.stage_wire = wire;
-    bench = std::make_unique<Bench>(scene);
+    bench = std::make_unique<Bench>(scene_of(instrument));
     bench->bring_up_daemon();
     return *bench;
   }
   static void TearDownTestSuite() { benches_.clear(); }
   void TearDown() override {
-    if (HasFailure()) benches_.erase(std::string(GetParam().wire));
+    if (HasFailure()) benches_.erase(std::string(GetParam().instrument));
   }
 
   void arm_in_mid_scan() {
@@ -147,7 +164,7 @@ class Faults : public testing::TestWithParam<FaultRow> {
   }
 
   inline static std::map<std::string, std::unique_ptr<Bench>> benches_;
-  Bench& bench_ = bench(std::string(GetParam().wire));
+  Bench& bench_ = bench(std::string(GetParam().instrument));
   long scan_ = 0;
   long first_event_ = 0;
   long fired_before_ = 0;

@@ -22,7 +22,7 @@ using nlohmann::json;
 // Different for each simulator of each test program that runs at the same time: from the process and a count.
 std::string own_camera_address() {
   static std::atomic<unsigned> count{0};
-  const unsigned number = (static_cast<unsigned>(getpid()) * 4U + count++ % 4U) & 0x3fffffU;
+  const unsigned number = (static_cast<unsigned>(getpid()) * 16U + count++ % 16U) & 0x3fffffU;
   return "127." + std::to_string(64U + (number >> 16U)) + "." + std::to_string((number >> 8U) & 0xffU) + "." +
          std::to_string(number & 0xffU);
 }

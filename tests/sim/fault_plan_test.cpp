@@ -5,6 +5,7 @@
 
 #include "base/toml_reader.h"
 #include "sim/faults/fault_desk.h"
+#include "sim/scene/check_fault.h"
 #include "sim/scene/read_faults.h"
 #include "tests/sim/bench.h"
 
@@ -52,6 +53,33 @@ TEST(FaultPlan, IsRefusedWithTheLineAndWhatWouldDo) {
   EXPECT_THAT(said("name = \"reply-lost\"\ntimes = 0\n"), HasSubstr("1 to"));
   EXPECT_THAT(said("name = \"reply-lost\"\nafter = 1.5\n"), HasSubstr("whole number"));
   EXPECT_THAT(said("name = \"reply-lost\"\ndevice = \"camera\"\n"), HasSubstr("stage"));
+}
+
+TEST(FaultPlan, NamesTheRadiometerThatAFaultIsMeantFor) {
+  const auto plan = read_text(
+      "[[faults]]\nname = \"radiometer-stall\"\n"
+      "[[faults]]\nname = \"radiometer-unplugged\"\nrole = \"monitor\"\nfor_wall_s = 2\n");
+  const auto other = read_text("[[faults]]\nname = \"radiometer-stall\"\nrole = \"spare\"\n");
+
+  ASSERT_TRUE(plan.has_value()) << describe(plan.error());
+  EXPECT_EQ(plan->at(0).role(), FaultRole::Detector);
+  EXPECT_EQ(plan->at(1).role(), FaultRole::Monitor);
+  ASSERT_FALSE(other.has_value());
+  EXPECT_THAT(describe(other.error()), HasSubstr("detector, monitor"));
+}
+
+TEST(FaultPlan, IsRefusedWhereTheSceneHasNoSuchDevice) {
+  Scene scene = quiet_scene();
+  scene.radiometers = {quiet_radiometer()};
+  const auto said = [&](const FaultWish& wish) {
+    const auto fits = check_fault(*planned_fault(wish), scene);
+    return fits ? std::string("taken") : describe(fits.error());
+  };
+
+  EXPECT_EQ(said({.name = "radiometer-stall"}), "taken");
+  EXPECT_THAT(said({.name = "radiometer-stall", .names = {{"role", "monitor"}}}),
+              HasSubstr("no radiometer as monitor"));
+  EXPECT_THAT(said({.name = "drive-power-cycle"}), HasSubstr("--stage drives"));
 }
 
 TEST(FaultDesk, StrikesAfterSoManyMomentsAndAsOftenAsAsked) {

@@ -154,6 +154,26 @@ TEST_P(UsbBusTest, TellsADriverAtOnceThatTheMeterIsGoneAndShowsItWhenItReturns) 
   expect_right_reading();
 }
 
+TEST_P(UsbBusTest, IsPulledAndPutBackByAFault) {
+  PlannedFault pulled{.kind = FaultKind::RadiometerUnplugged, .after = 3};
+  pulled.values[FaultParameter::Role] = static_cast<double>(FaultRole::Monitor);
+  ASSERT_TRUE(driver.ensure_open());
+  ASSERT_TRUE(meter.with_instrument([&](Instrument& i, Instant now) { return i.arm(pulled, now); }));
+  bus.look_at_faults();
+
+  const Collected taken = take(driver);
+  meter.with_instrument([](Instrument& i, Instant now) { i.end_fault(FaultKind::RadiometerUnplugged, now); });
+  bus.look_at_faults();
+  const Instant deadline = clock.now() + kPatience;
+  auto who = driver.ensure_open();
+  while (!who && clock.now() < deadline) who = driver.ensure_open();
+
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, ErrorCode::Unreachable) << describe(taken.error());
+  ASSERT_TRUE(who) << describe(who.error());
+  expect_right_reading();
+}
+
 TEST_P(UsbBusTest, GivesTheInterfaceToOneOnly) {
   ASSERT_TRUE(driver.ensure_open());
   drivers::LibusbUsbtmcLink second(usb());

@@ -118,11 +118,32 @@ TEST_F(UsbtmcFunctionTest, StallsRequestsThatItDoesNotKnow) {
   }
 }
 
-TEST_F(UsbtmcFunctionTest, KnowsItsFaultsByName) {
-  for (const NamedRadiometerFault& named : kRadiometerFaults) {
-    EXPECT_EQ(radiometer_fault_from_name(named.name), named.fault);
-  }
-  EXPECT_FALSE(radiometer_fault_from_name("sulk"));
+TEST_F(UsbtmcFunctionTest, HasTheFaultsThatAreMeantForItAtTheReplyThatTheyWaitFor) {
+  PlannedFault torn{.kind = FaultKind::RadiometerReplyTorn, .after = 1};
+  PlannedFault of_the_monitor{.kind = FaultKind::RadiometerReplyTorn};
+  of_the_monitor.values[FaultParameter::Role] = static_cast<double>(FaultRole::Monitor);
+  ASSERT_TRUE(bench.instrument.arm(torn, bench.now));
+  ASSERT_TRUE(bench.instrument.arm(of_the_monitor, bench.now));
+
+  ask();
+  EXPECT_EQ(function.bulk_in(512, bench.now).bytes, kReply);
+  ask();
+  EXPECT_EQ(function.bulk_in(512, bench.now).bytes, (Bytes{kReply.begin(), kReply.begin() + 13}));
+  ask();
+  EXPECT_EQ(function.bulk_in(512, bench.now).bytes, kReply);
+  EXPECT_EQ(bench.instrument.faults().count(FaultKind::RadiometerReplyTorn, bench.now).fired, 1U);
+}
+
+TEST_F(UsbtmcFunctionTest, SaysNothingOnceItsCableIsOut) {
+  ask();
+  EXPECT_FALSE(function.is_unplugged(bench.now));
+
+  ASSERT_TRUE(bench.instrument.arm({.kind = FaultKind::RadiometerUnplugged, .after = 0}, bench.now));
+
+  EXPECT_EQ(function.bulk_in(512, bench.now).outcome, UsbOutcome::NotReady);
+  EXPECT_TRUE(function.is_unplugged(bench.now));
+  bench.instrument.end_fault(FaultKind::RadiometerUnplugged, bench.now);
+  EXPECT_FALSE(function.is_unplugged(bench.now));
 }
 
 }  // namespace
