@@ -33,6 +33,14 @@ std::string astm_header(const MeasuredBrdf& brdf, std::size_t channel, std::size
   return text + fmt::format("VARS {},{}\n", fmt::join(kAstmAngles, ","), name);
 }
 
+// pi/2 as a float or in seven digits lies a little below the horizon.
+double theta_deg(double theta) {
+  constexpr double kHorizon = 90.0;
+  constexpr double kRounding = 1e-4;
+  const double angle = theta / kRadian;
+  return angle > kHorizon && angle < kHorizon + kRounding ? kHorizon : angle;
+}
+
 Channel astm_channel(std::string_view name, const TextLines& lines) {
   Channel channel{.name = std::string(name)};
   if (!name.ends_with("nm")) return channel;
@@ -119,7 +127,7 @@ class AstmReader {
           cells[n], is_angle ? kAstmAngles[n] : std::string_view(brdf_.channels[n - kFields.size()].name));
       if (!value) return failure(value.error());
       if (is_angle) {
-        point.*kFields[n] = *value / kRadian;
+        point.*kFields[n] = n % 2 == 0 ? theta_deg(*value) : *value / kRadian;
         continue;
       }
       point.channel = static_cast<std::uint32_t>(n - kFields.size());

@@ -12,7 +12,7 @@ namespace gonio::formats {
 namespace {
 
 Error write_error(const std::string& path, int reason) {
-  return {.code = reason == ENOSPC || reason == EDQUOT ? ErrorCode::DiskFull : ErrorCode::FileUnreadable,
+  return {.code = reason == ENOSPC || reason == EDQUOT ? ErrorCode::DiskFull : ErrorCode::InvalidInput,
           .tried = "write the file",
           .seen = std::strerror(reason),
           .where = InputLocation{path, 0, ""}};

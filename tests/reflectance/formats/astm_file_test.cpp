@@ -96,6 +96,13 @@ TEST(AstmFile, OfOthersHasAColumnAChannel) {
   EXPECT_EQ(read->metadata.remarks[0].second, "a value");
 }
 
+TEST(AstmFile, TakesHalfPiAsOthersRoundIt) {
+  const Result<MeasuredBrdf> read =
+      read_astm("VARS theta_i,phi_i,theta_s,phi_s,x\n0.5,0,1.5707964,0,1\n", "theirs.astm");
+  ASSERT_TRUE(read) << describe(read.error());
+  EXPECT_EQ(read->points[0].theta_r_deg, 90.0);
+}
+
 TEST(AstmFile, SaysWhereABadOneIsBad) {
   const std::string head = "NUM_POINTS 1\nVARS theta_i,phi_i,theta_s,phi_s,550nm\n";
   const auto said = [](const std::string& text) {

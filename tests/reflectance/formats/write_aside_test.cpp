@@ -52,7 +52,7 @@ TEST_F(WriteAside, LeavesTheOldFileWhereTheNewOneCannotBeFinished) {
   const Result<void> nowhere = write_aside((folder_ / "no" / "such").string(), "new");
 
   ASSERT_FALSE(over_folder);
-  EXPECT_EQ(over_folder.error().code, ErrorCode::FileUnreadable);
+  EXPECT_EQ(over_folder.error().code, ErrorCode::InvalidInput);
   EXPECT_THAT(describe(over_folder.error()), testing::HasSubstr("folder"));
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(content("old"), "old");

@@ -1,0 +1,134 @@
+#include "reflectance/formats/format.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "reflectance/formats/alta_file.h"
+#include "reflectance/formats/astm_file.h"
+#include "reflectance/formats/bird_file.h"
+#include "reflectance/formats/csv_file.h"
+#include "reflectance/formats/merl_file.h"
+#include "reflectance/formats/nexus_file.h"
+#include "reflectance/formats/rgl_file.h"
+#include "reflectance/formats/ssdd_file.h"
+#include "reflectance/formats/text_lines.h"
+#include "reflectance/formats/zemax_file.h"
+
+namespace gonio::formats {
+namespace {
+
+struct FormatRow {
+  Format format;
+  std::string_view name;
+  bool is_readable;
+  bool is_writable;
+};
+constexpr std::array kFormats{
+    FormatRow{Format::Csv, "csv", true, true},      FormatRow{Format::Bird, "bird", true, true},
+    FormatRow{Format::Astm, "astm", true, true},    FormatRow{Format::Zemax, "zemax", true, true},
+    FormatRow{Format::Merl, "merl", true, true},    FormatRow{Format::Ssdd, "ssdd", true, true},
+    FormatRow{Format::Pab, "pab", false, true},     FormatRow{Format::Alta, "alta", true, false},
+    FormatRow{Format::Klems, "klems", false, true}, FormatRow{Format::Rgl, "rgl", true, true},
+    FormatRow{Format::Nexus, "nexus", true, true}};
+
+const FormatRow& row_of(Format format) {
+  return kFormats.at(static_cast<std::size_t>(format));
+}
+
+constexpr std::string_view kHdf5Start = "\x89HDF\r\n\x1a\n";
+constexpr std::string_view kTensorStart{"tensor_file\0", 12};
+constexpr std::string_view kMerlStart{"\x5A\0\0\0\x5A\0\0\0\xB4\0\0\0", 12};  // 90, 90, 180
+
+bool has(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+std::optional<Format> detect_text(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return std::nullopt;
+  const std::string_view line = text.substr(first, text.find('\n', first) - first);
+  if (has(line, "theta_i_deg") && has(line, "f_per_sr")) return Format::Csv;
+  if (text[first] == '{')
+    return has(text, "\"metadata\"") && has(text, "\"BRDF\"") ? std::optional(Format::Bird) : std::nullopt;
+  if (text[first] == '<') return has(text, "<WindowElement") ? std::optional(Format::Klems) : std::nullopt;
+  if (line.starts_with("VERSION") && has(text, "DATA_TYPE")) return Format::Ssdd;
+  if (has(text, "#PARAM_IN")) return Format::Alta;
+  if (has(text, "#format: theta phi")) return Format::Pab;
+  if (has(text, "ScatterRadial") && has(text, "AngleOfIncidence")) return Format::Zemax;
+  if (has(text, "VARS theta_i")) return Format::Astm;
+  return std::nullopt;
+}
+
+Error unknown_format(std::string file, std::string seen) {
+  std::string known;
+  for (const FormatRow& row : kFormats)
+    if (row.is_readable) known.append(known.empty() ? "" : ", ").append(row.name);
+  return {.code = ErrorCode::InvalidInput,
+          .tried = "read a BRDF",
+          .seen = std::move(seen),
+          .limit = known,
+          .where = InputLocation{std::move(file), 1, ""}};
+}
+
+}  // namespace
+
+std::string_view format_name(Format format) {
+  return row_of(format).name;
+}
+
+std::optional<Format> format_from_name(std::string_view name) {
+  const auto at = std::ranges::find(kFormats, name, &FormatRow::name);
+  return at == kFormats.end() ? std::nullopt : std::optional(at->format);
+}
+
+bool is_readable(Format format) {
+  return row_of(format).is_readable;
+}
+
+bool is_writable(Format format) {
+  return row_of(format).is_writable;
+}
+
+std::optional<Format> detect_format(std::string_view bytes) {
+  constexpr std::size_t kHeader = 65536;  // no header of the texts is longer; BiRD's keys may stand in any order
+  if (bytes.starts_with(kHdf5Start)) return Format::Nexus;
+  if (bytes.starts_with(kTensorStart)) return Format::Rgl;
+  if (bytes.starts_with(kMerlStart)) return Format::Merl;
+  const bool is_object = trimmed(bytes.substr(0, kHeader)).starts_with('{');
+  return detect_text(is_object ? bytes : bytes.substr(0, kHeader));
+}
+
+Result<MeasuredBrdf> read_brdf(std::string_view bytes, const std::string& file,
+                               std::optional<std::string_view> sidecar) {
+  const std::optional<Format> format = detect_format(bytes);
+  if (!format)
+    return failure(unknown_format(file, bytes.empty() ? "an empty file" : "none of the formats that are known"));
+  switch (*format) {
+    case Format::Csv:
+      return read_csv(bytes, sidecar, file);
+    case Format::Bird:
+      return read_bird(bytes, file);
+    case Format::Astm:
+      return read_astm(bytes, file);
+    case Format::Zemax:
+      return read_zemax(bytes, file);
+    case Format::Merl:
+      return read_merl(bytes, file);
+    case Format::Ssdd:
+      return read_ssdd(bytes, file);
+    case Format::Alta:
+      return read_alta(bytes, file);
+    case Format::Rgl:
+      return read_rgl(bytes, file);
+    case Format::Nexus:
+      return read_nexus(bytes, file);
+    case Format::Pab:
+    case Format::Klems:
+      break;
+  }
+  return failure(unknown_format(file, fmt::format("{}, which is written only", format_name(*format))));
+}
+
+}  // namespace gonio::formats

@@ -1,0 +1,86 @@
+#include "reflectance/formats/format.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "reflectance/formats/astm_file.h"
+#include "reflectance/formats/bird_file.h"
+#include "reflectance/formats/csv_file.h"
+#include "reflectance/formats/klems_file.h"
+#include "reflectance/formats/merl_file.h"
+#include "reflectance/formats/nexus_file.h"
+#include "reflectance/formats/pab_file.h"
+#include "reflectance/formats/rgl_file.h"
+#include "reflectance/formats/ssdd_file.h"
+#include "reflectance/formats/zemax_file.h"
+#include "tests/reflectance/formats/sample_files.h"
+#include "tests/reflectance/surfaces.h"
+
+namespace gonio::formats {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<std::pair<Format, std::string>> one_of_each() {
+  const MeasuredBrdf brdf = bright_retro();
+  SurfaceFile file;
+  file.channels.push_back({.channel = channel_at(550.0), .surface = reflectance::wheat()});
+  return {{Format::Csv, bytes_of(write_csv(brdf), ".csv")},
+          {Format::Bird, bytes_of(write_bird(brdf), ".brdf")},
+          {Format::Astm, bytes_of(write_astm(brdf), ".astm")},
+          {Format::Zemax, bytes_of(write_zemax(file), ".bsdf")},
+          {Format::Merl, bytes_of(write_merl(file), ".binary")},
+          {Format::Ssdd, bytes_of(write_ssdd(file), ".ssdd")},
+          {Format::Pab, bytes_of(write_pab(brdf), "-30-0.dat")},
+          {Format::Alta, "#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n#PARAM_OUT INV_STERADIAN\n0.5 0 0 5\n"},
+          {Format::Klems, bytes_of(write_klems(file), ".xml")},
+          {Format::Rgl, bytes_of(write_rgl(file, {.nodes = 8, .incidence_step_deg = 44.0}), ".bsdf")},
+          {Format::Nexus, bytes_of(write_nexus(brdf), ".nxs")}};
+}
+
+TEST(Format, IsKnownByWhatStandsInTheFile) {
+  for (const auto& [format, bytes] : one_of_each()) {
+    SCOPED_TRACE(format_name(format));
+    ASSERT_FALSE(bytes.empty());
+    EXPECT_EQ(detect_format(bytes), format);
+    EXPECT_EQ(format_from_name(format_name(format)), format);
+    const Result<MeasuredBrdf> read = read_brdf(bytes, "some.file");
+    EXPECT_EQ(read.has_value(), is_readable(format)) << (read ? "" : describe(read.error()));
+    if (!read) {
+      EXPECT_THAT(describe(read.error()), HasSubstr("written only"));
+    }
+  }
+  EXPECT_FALSE(is_writable(Format::Alta));
+}
+
+TEST(Format, ThatIsNoneHasItsWord) {
+  for (const std::string bytes : {"", "hello", "{\"a\": 1}", "<html>", "\x89PNG\r\n", " \n\n"}) {
+    EXPECT_FALSE(detect_format(bytes)) << bytes;
+    const Result<MeasuredBrdf> read = read_brdf(bytes, "what.bin");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(describe(read.error()), HasSubstr("what.bin"));
+    EXPECT_THAT(describe(read.error()), HasSubstr("csv, bird, astm"));
+  }
+  EXPECT_FALSE(format_from_name("jpeg"));
+}
+
+// Each file under the name of each other format's reader: an error that names the file, never a crash or a wrong
+// reading.
+TEST(Format, OfAnotherKindIsRefusedByEveryReader) {
+  for (const auto& [format, bytes] : one_of_each()) {
+    SCOPED_TRACE(format_name(format));
+    const std::vector<std::pair<Format, Result<MeasuredBrdf>>> tried{{Format::Csv, read_csv(bytes, std::nullopt, "x")},
+                                                                     {Format::Bird, read_bird(bytes, "x")},
+                                                                     {Format::Astm, read_astm(bytes, "x")},
+                                                                     {Format::Zemax, read_zemax(bytes, "x")},
+                                                                     {Format::Merl, read_merl(bytes, "x")},
+                                                                     {Format::Ssdd, read_ssdd(bytes, "x")},
+                                                                     {Format::Rgl, read_rgl(bytes, "x")},
+                                                                     {Format::Nexus, read_nexus(bytes, "x")}};
+    for (const auto& [reader, result] : tried)
+      EXPECT_EQ(result.has_value(), reader == format) << "by the reader of " << format_name(reader);
+  }
+}
+
+}  // namespace
+}  // namespace gonio::formats
