@@ -11,6 +11,7 @@
 #include "cli/doctor/findings_view.h"
 #include "cli/files.h"
 #include "cli/invocation.h"
+#include "cli/plan_files.h"
 #include "cli/scan_comparison.h"
 #include "cli/scan_watch.h"
 #include "cli/views.h"
@@ -136,9 +137,9 @@ class Runner {
   }
 
   Result<std::string> submission() {
-    Result<std::string> plan = read_text(wanted_.file);
+    const Result<api::PlanSubmission> plan = read_plan(wanted_.file);
     if (!plan) return failure(plan.error());
-    return api::to_json(api::PlanSubmission{.plan = std::move(*plan), .plan_file = wanted_.file, .parts = {}});
+    return api::to_json(*plan);
   }
 
   Result<int> check_plan() {
@@ -200,8 +201,9 @@ class Runner {
   Result<int> repeat_scan() {
     const auto first = client_.get<api::ScanReport>(RouteId::ScanOne, wanted_.scan);
     if (!first) return failure(first.error());
-    const api::PlanSubmission again{
-        .plan = first->value.plan.value_or(""), .plan_file = first->value.plan_file.value_or(""), .parts = {}};
+    const api::PlanSubmission again{.plan = first->value.plan.value_or(""),
+                                    .plan_file = first->value.plan_file.value_or(""),
+                                    .parts = first->value.plan_parts};
     const auto submitted =
         client_.post<api::CommandReport>(RouteId::ScanSubmit, 0, api::to_json(again), {{"Idempotency-Key", new_key()}});
     if (!submitted) return failure(submitted.error());

@@ -56,6 +56,7 @@ NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, con
   scan.policy = policy_of(checked.plan);
   scan.plan_text = submission.plan;
   scan.plan_file = submission.plan_file;
+  scan.plan_parts = submission.parts;
   scan.reference_serial = checked.plan.reference_standard;
   scan.reference_text = std::move(checked.reference.text);
   scan.instrument_text = instrument.text;
@@ -245,6 +246,7 @@ Result<api::ScanReport> DaemonService::scan(std::int64_t scan) {
   if (!texts) return failure(texts.error());
   report.plan = texts->plan;
   report.plan_file = texts->plan_file;
+  report.plan_parts = texts->plan_parts;
   if (!is_over(info->state)) return report;
   const Result<BrdfInfo> brdf = ask_store([scan](StoreReader& store) { return brdf_of(store, scan); });
   if (!brdf) return report;  // the scan is there all the same; GET brdf says why it has no values

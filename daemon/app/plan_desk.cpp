@@ -15,7 +15,7 @@ Error at_the_plans_standard(Error error, const std::string& file) {
 Result<CheckedPlan> check_plan(const api::PlanSubmission& submission, const Instrument& instrument,
                                const ReferenceShelf& shelf, UtcTime today) {
   const std::string file = submission.plan_file.empty() ? "plan.toml" : submission.plan_file;
-  Result<api::Plan> plan = api::parse_plan(submission.plan, file);
+  Result<api::Plan> plan = api::parse_plan(submission.plan, file, submission.parts);
   if (!plan) return failure(plan.error());
   Result<PlannedScan> planned = expand(*plan, instrument);
   if (!planned) {

@@ -18,6 +18,7 @@ struct ScanPoint {
   Geometry geometry;
   Wavelength wavelength;
   bool blocked = false;  ///< by the shadow of the detector's head: recorded, never visited, never filled in
+  int repeat = 1;        ///< which of the times that the plan asks for this point
 };
 
 /// Time in which nothing moved, settled, took light or gave a frame, by what it waited for.
@@ -43,10 +44,12 @@ struct TimeParts {
 /// What a dry run says, and what the run then does.
 struct PlannedScan {
   int planner_version = 0;
-  std::vector<ScanPoint> points;    ///< by index
-  std::vector<std::int32_t> order;  ///< indices of the points that are not blocked, by rank
-  std::int64_t asked = 0;           ///< combinations in the plan's text
-  std::int64_t merged = 0;          ///< duplicates by phi at theta = 0, left out
+  std::vector<ScanPoint> points;              ///< by index
+  std::vector<std::int32_t> order;            ///< indices of the points that are not blocked, by rank
+  std::int64_t asked = 0;                     ///< combinations in the plan's text
+  std::int64_t merged = 0;                    ///< the same directions once more, left out
+  std::int64_t out_of_reach = 0;              ///< of cones, beyond the axes' limits: left out
+  std::vector<std::int32_t> without_partner;  ///< of reciprocal pairs: points whose partner the arms do not reach
   std::int64_t blocked = 0;
   std::int64_t items = 0;  ///< sample and reference, of the points that are not blocked
   TimeParts estimate;      ///< visits included

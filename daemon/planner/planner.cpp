@@ -2,146 +2,191 @@
 
 #include <fmt/core.h>
 
-#include <array>
-#include <cmath>
+#include <string>
 #include <utility>
 
+#include "daemon/planner/direction_index.h"
 #include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/measuring_order.h"
+#include "daemon/planner/part_directions.h"
 #include "drivers/motion/route.h"
 
 namespace gonio::daemon {
 
 namespace {
 
-constexpr double kMostPoints = 1e7;       // more is a slip of a plan's author, and would fill the disk with empty rows
-constexpr double kSameAngle_rad = 1e-11;  // as written: list values are equal or they are not
+constexpr std::int64_t kMostPoints = 10'000'000;  // more is a slip of a plan's author, and would fill the disk
 
-bool is_zero(Angle a) {
-  return std::abs(a.si()) < kSameAngle_rad;
-}
+// Where the plan, or a list of points, asked for a direction.
+struct Origin {
+  InputLocation where;
+  bool is_listed = false;
+};
 
-// For each value, the first in the list that means the same.
-template <class T, class Same>
-std::vector<std::uint32_t> first_of_same(const std::vector<T>& values, Same same) {
-  std::vector<std::uint32_t> first(values.size());
-  for (std::uint32_t k = 0; k < values.size(); ++k) {
-    first[k] = k;
-    for (std::uint32_t earlier = 0; earlier < k; ++earlier) {
-      if (!same(values[earlier], values[k])) continue;
-      first[k] = earlier;
-      break;
-    }
-  }
-  return first;
-}
-
-// The lists of a product plan, as places in a grid: theta_i, phi_i, theta_r, phi_r, wavelength.
-constexpr std::size_t kPlanListCount = 5;
-using GridPlace = std::array<std::uint32_t, kPlanListCount>;
-
-// Walks the product of the lists, theta_i slowest, wavelength fastest.
 class Expansion {
  public:
-  Expansion(const api::Plan& plan, const Instrument& instrument) : plan_(plan), instrument_(instrument) {
-    const auto same_angle = [](Angle a, Angle b) { return is_zero(a - b); };
-    const auto same_azimuth = [](Angle a, Angle b) { return is_zero(wrapped(a - b)); };
-    const auto same_wavelength = [](Wavelength a, Wavelength b) { return a == b; };
-    first_ = {first_of_same(plan.theta_i, same_angle), first_of_same(plan.phi_i, same_azimuth),
-              first_of_same(plan.theta_r, same_angle), first_of_same(plan.phi_r, same_azimuth),
-              first_of_same(plan.wavelengths, same_wavelength)};
-    for (std::size_t list = 0; list < kPlanListCount; ++list) {
-      sizes_[list] = static_cast<std::uint32_t>(first_[list].size());
-    }
-  }
+  Expansion(const api::Plan& plan, const Instrument& instrument)
+      : plan_(plan),
+        instrument_(instrument),
+        is_relative_(plan.relative_azimuth.value_or(plan.isotropic)),
+        known_(plan.isotropic) {}
 
   Result<PlannedScan> run() {
-    double combinations = 1.0;
-    for (const std::uint32_t size : sizes_) combinations *= size;
-    if (combinations < 1.0 || combinations > kMostPoints) {
-      return failure(Error{.code = ErrorCode::InvalidInput,
-                           .device = "plan",
-                           .tried = "expand the lists of [geometry]",
-                           .seen = fmt::format("{:.0f} points", combinations),
-                           .limit = fmt::format("1 to {:.0f} points", kMostPoints),
-                           .where = InputLocation{.field = "geometry"}});
-    }
-    const auto count = static_cast<std::uint64_t>(combinations);
-    for (std::uint64_t k = 0; k < count; ++k) {
-      GONIO_TRY(take(place_of(k)));
-    }
+    if (!plan_.theta_r.empty()) GONIO_TRY(take(product_of(plan_)));
+    for (const api::PlanPart& part : plan_.parts) GONIO_TRY(take(part));
+    if (plan_.is_reciprocal) GONIO_TRY(add_partners());
+    GONIO_TRY(check_count());
+    repeat();
     return finish();
   }
 
  private:
-  [[nodiscard]] GridPlace place_of(std::uint64_t k) const {
-    GridPlace place{};
-    for (std::size_t list = kPlanListCount; list-- > 0;) {
-      place[list] = static_cast<std::uint32_t>(k % sizes_[list]);
-      k /= sizes_[list];
-    }
-    return place;
+  static api::PlanPart product_of(const api::Plan& plan) {
+    return {.where = {.field = "geometry"},
+            .theta_i = plan.theta_i,
+            .phi_i = plan.phi_i,
+            .wavelengths = plan.wavelengths,
+            .repeats = plan.repeats,
+            .shape = api::ProductShape{plan.theta_r, plan.phi_r}};
   }
 
-  // At a pole the azimuth means nothing; an isotropic sample looks the same from all sides, so that there only theta
-  // counts.
-  [[nodiscard]] bool is_first_of_its_direction(const GridPlace& place) const {
-    for (std::size_t list = 0; list < kPlanListCount; ++list) {
-      if (first_[list][place[list]] != place[list]) return false;
-    }
-    const bool at_source_pole = is_zero(plan_.theta_i[place[0]]);
-    const bool at_detector_pole = is_zero(plan_.theta_r[place[2]]);
-    if (at_detector_pole && place[3] != 0) return false;
-    if (!plan_.isotropic) return true;
-    if (at_source_pole && place[3] != 0) return false;
-    return !((at_source_pole || at_detector_pole) && place[1] != 0);
+  [[nodiscard]] Result<void> check_count() const {
+    if (planned_.asked > 0 && planned_.asked <= kMostPoints) return {};
+    return failure(Error{.code = ErrorCode::InvalidInput,
+                         .device = "plan",
+                         .tried = "expand [geometry]",
+                         .seen = planned_.asked == 0 ? "no points" : fmt::format("{} points or more", planned_.asked),
+                         .limit = fmt::format("1 to {} points", kMostPoints),
+                         .where = InputLocation{.field = "geometry"}});
   }
 
-  Result<void> take(const GridPlace& place) {
-    ++planned_.asked;
-    if (!is_first_of_its_direction(place)) {
-      ++planned_.merged;
+  // Before lists that are too long are walked.
+  [[nodiscard]] static double combinations(const api::PlanPart& part) {
+    const auto* product = std::get_if<api::ProductShape>(&part.shape);
+    if (product == nullptr) return 0.0;
+    double all = part.repeats;
+    for (const std::size_t n : {part.theta_i.size(), part.phi_i.size(), product->theta_r.size(), product->phi_r.size(),
+                                part.wavelengths.size()}) {
+      all *= static_cast<double>(n);
+    }
+    return all;
+  }
+
+  Result<void> take(const api::PlanPart& part) {
+    if (combinations(part) > static_cast<double>(kMostPoints)) {
+      planned_.asked = kMostPoints + 1;
+      return check_count();
+    }
+    return for_each_direction(part, instrument_, is_relative_, [&](const AskedDirection& asked) -> Result<void> {
+      Origin origin{part.where};
+      if (const auto* list = std::get_if<api::ListShape>(&part.shape)) origin = {{list->file, asked.line, ""}, true};
+      if (asked.wavelength) return take(asked, *asked.wavelength, part.repeats, origin);
+      for (const Wavelength wavelength : part.wavelengths) {
+        GONIO_TRY(take(asked, wavelength, part.repeats, origin));
+      }
+      return {};
+    });
+  }
+
+  Result<void> take(const AskedDirection& asked, Wavelength wavelength, int repeats, const Origin& origin) {
+    planned_.asked += repeats;
+    if (planned_.asked > kMostPoints) return check_count();
+    const auto point = reached(asked.geometry, wavelength, origin);
+    if (!point && asked.may_be_out_of_reach && point.error().code == ErrorCode::OutOfLimits) {
+      planned_.out_of_reach += repeats;
       return {};
     }
-    const Angle phi_i = plan_.phi_i[place[1]];
-    ScanPoint point{.index = static_cast<std::int32_t>(planned_.points.size()),
-                    .geometry = {.theta_i = plan_.theta_i[place[0]],
-                                 .phi_i = phi_i,
-                                 .theta_r = plan_.theta_r[place[2]],
-                                 .phi_r = plan_.phi_r[place[3]] + (plan_.isotropic ? phi_i : Angle{})},
-                    .wavelength = plan_.wavelengths[place[4]]};
-    const auto target = axis_targets(point.geometry, point.wavelength, instrument_, home_);
-    if (!target) return failure(named_by_the_plan(target.error(), point.geometry));
-    GONIO_TRY(check_approach(*target, point.geometry));
-    point.blocked = is_blocked(point.geometry, instrument_);
-    planned_.points.push_back(point);
+    if (!point) return failure(point.error());
+    add(*point, repeats);
     return {};
   }
 
-  // An axis that turns past its target must be able to, wherever it comes from.
-  Result<void> check_approach(const drivers::MotionTarget& target, const Geometry& g) const {
-    const auto turns = drivers::check_approach(instrument_.stage, target);
-    return turns ? turns : failure(named_by_the_plan(turns.error(), g));
+  void add(const ScanPoint& point, int repeats) {
+    const auto number = static_cast<std::int32_t>(planned_.points.size());
+    const auto twin = known_.find_or_add(point.geometry, point.wavelength, number);
+    if (!twin) {
+      planned_.points.push_back(point);
+      repeats_.push_back(repeats);
+      return;
+    }
+    int& kept = repeats_[static_cast<std::size_t>(*twin)];
+    planned_.merged += std::min(kept, repeats);
+    kept = std::max(kept, repeats);
   }
 
-  // The instrument's error, with the field of the plan that asked for it; where no axis is one of the plan's angles,
+  [[nodiscard]] Result<ScanPoint> reached(const Geometry& g, Wavelength wavelength, const Origin& origin) const {
+    ScanPoint point{.geometry = g, .wavelength = wavelength};
+    const auto target = axis_targets(g, wavelength, instrument_, home_);
+    if (!target) return failure(named_by_the_plan(target.error(), g, origin));
+    // An axis that turns past its target must be able to, wherever it comes from.
+    const auto turns = drivers::check_approach(instrument_.stage, *target);
+    if (!turns) return failure(named_by_the_plan(turns.error(), g, origin));
+    point.blocked = is_blocked(g, instrument_);
+    return point;
+  }
+
+  // Source and detector exchanged. With an isotropic sample both turn together until phi_i is what it was.
+  [[nodiscard]] Geometry exchanged(const Geometry& g) const {
+    if (!plan_.isotropic) return {.theta_i = g.theta_r, .phi_i = g.phi_r, .theta_r = g.theta_i, .phi_r = g.phi_i};
+    return {.theta_i = g.theta_r, .phi_i = g.phi_i, .theta_r = g.theta_i, .phi_r = g.phi_i - (g.phi_r - g.phi_i)};
+  }
+
+  Result<void> add_partners() {
+    const std::size_t asked = planned_.points.size();
+    for (std::size_t k = 0; k < asked; ++k) {
+      const ScanPoint point = planned_.points[k];
+      const Geometry g = exchanged(point.geometry);
+      if (known_.find(g, point.wavelength)) continue;
+      const auto partner = reached(g, point.wavelength, {});
+      if (!partner && partner.error().code != ErrorCode::OutOfLimits) return failure(partner.error());
+      if (!partner) {
+        planned_.without_partner.push_back(static_cast<std::int32_t>(k));
+        continue;
+      }
+      planned_.asked += repeats_[k];
+      add(*partner, repeats_[k]);
+    }
+    return {};
+  }
+
+  // Each point as often as it is asked for, under an index of its own.
+  void repeat() {
+    std::vector<ScanPoint> once = std::exchange(planned_.points, {});
+    std::vector<std::int32_t> first(once.size());
+    for (std::size_t k = 0; k < once.size(); ++k) {
+      first[k] = static_cast<std::int32_t>(planned_.points.size());
+      for (int n = 1; n <= repeats_[k]; ++n) {
+        once[k].index = static_cast<std::int32_t>(planned_.points.size());
+        once[k].repeat = n;
+        planned_.points.push_back(once[k]);
+      }
+    }
+    for (std::int32_t& alone : planned_.without_partner) alone = first[static_cast<std::size_t>(alone)];
+  }
+
+  // The instrument's error, with what the plan calls it and where it asked; where no axis is one of the plan's angles,
   // with the direction.
-  [[nodiscard]] Error named_by_the_plan(Error error, const Geometry& g) const {
-    std::string field = "geometry.wavelength_nm";
+  [[nodiscard]] Error named_by_the_plan(Error error, const Geometry& g, const Origin& origin) const {
+    std::string field = "wavelength_nm";
     const bool is_direction = error.code == ErrorCode::OutOfLimits;
     if (is_direction && instrument_.stage.kinematics.kind != drivers::KinematicsKind::Arms) {
-      field = "geometry";
+      field.clear();
       error.tried +=
           fmt::format(" for theta_i {:.3f}, phi_i {:.3f}, theta_r {:.3f}, phi_r {:.3f} deg", in_degrees(g.theta_i),
                       in_degrees(g.phi_i), in_degrees(g.theta_r), in_degrees(g.phi_r));
     } else if (is_direction) {
+      field.clear();
       for (const auto axis : {stage::Axis::ThetaI, stage::Axis::ThetaR, stage::Axis::PhiR, stage::Axis::PhiI}) {
         const std::string name(stage::axis_name(axis));
-        if (error.tried.find("move " + name + " ") == 0) field = "geometry." + name + "_deg";
+        if (error.tried.find("move " + name + " ") == 0) field = name + "_deg";
       }
     }
+    InputLocation where = origin.where;
+    if (where.field.empty() && !origin.is_listed) where.field = "geometry";
+    const bool needs_dot = !where.field.empty() && !field.empty();
+    where.field += (needs_dot ? "." : "") + field;
     error.device = "plan";
-    error.where = InputLocation{.field = std::move(field)};
+    error.where = std::move(where);
     return error;
   }
 
@@ -173,9 +218,10 @@ class Expansion {
 
   const api::Plan& plan_;
   const Instrument& instrument_;
+  const bool is_relative_;
   const stage::PerAxis<double> home_ = home_position(instrument_);
-  std::array<std::vector<std::uint32_t>, kPlanListCount> first_;
-  GridPlace sizes_{};
+  DirectionIndex known_;
+  std::vector<int> repeats_;  ///< of each point, while each stands once
   PlannedScan planned_;
 };
 

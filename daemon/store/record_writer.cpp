@@ -86,19 +86,25 @@ void RecordWriter::operator()(const NewScan& scan) {
   insert.bind(scan.planned.asked).bind(scan.planned.merged).bind(scan.planned.blocked).bind(scan.planned.items);
   insert.bind(scan.who).bind(time_.run).bind(time_.utc_ns).bind(time_.boottime_ns).bind(time_.utc_ns).run();
   new_scan_ = database_.last_id();
+  write_plan_parts(scan.plan_parts);
   write_points(scan.planned.points);
   write_turn(new_scan_, scan.turn);
+}
+
+void RecordWriter::write_plan_parts(const std::map<std::string, std::string>& parts) {
+  Statement& insert = database_.statement("INSERT INTO plan_part(scan_id, name, text) VALUES (?,?,?)");
+  for (const auto& [name, text] : parts) insert.bind(new_scan_).bind(name).bind(text).run();
 }
 
 void RecordWriter::write_points(const std::vector<ScanPoint>& points) {
   Statement& insert = database_.statement(
       "INSERT INTO point(scan_id, point_index, rank, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, wavelength_nm, "
-      "blocked) VALUES (?,?,?,?,?,?,?,?,?)");
+      "blocked, repeat) VALUES (?,?,?,?,?,?,?,?,?,?)");
   for (const ScanPoint& point : points) {
     insert.bind(new_scan_).bind(point.index).bind(point.rank);
     insert.bind(in_degrees(point.geometry.theta_i)).bind(in_degrees(point.geometry.phi_i));
     insert.bind(in_degrees(point.geometry.theta_r)).bind(in_degrees(point.geometry.phi_r));
-    insert.bind(in_nanometres(point.wavelength)).bind(point.blocked).run();
+    insert.bind(in_nanometres(point.wavelength)).bind(point.blocked).bind(point.repeat).run();
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 
 #include "daemon/store/database.h"
 #include "daemon/store/records.h"
@@ -42,6 +44,7 @@ class RecordWriter {
   std::int64_t id_of_campaign(const std::string& name);
   std::int64_t id_of_reference(const NewScan& scan);
   std::int64_t id_of_instrument(const NewScan& scan);
+  void write_plan_parts(const std::map<std::string, std::string>& parts);
   void write_points(const std::vector<ScanPoint>& points);
   void write_turn(ScanId scan, const ScanTurn& turn);
   void write_order(ScanId scan, const std::vector<std::int32_t>& order);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -141,8 +142,9 @@ struct NewScan {
   std::string sample;
   bool isotropic = true;
   ScanPolicy policy;
-  std::string plan_text;  ///< as sent
-  std::string plan_file;  ///< the user's name for it
+  std::string plan_text;                          ///< as sent
+  std::string plan_file;                          ///< the user's name for it
+  std::map<std::string, std::string> plan_parts;  ///< the files that it names, by name
   std::string reference_serial;
   std::string reference_text;   ///< reference/*.toml, as used
   std::string instrument_text;  ///< instrument.toml, as used

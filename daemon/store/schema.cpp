@@ -352,8 +352,19 @@ ALTER TABLE visit ADD COLUMN idle_device_ns INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE visit ADD COLUMN idle_hold_ns INTEGER NOT NULL DEFAULT 0;
 )sql";
 
+// Version 8: the files that a plan names, and points that are measured several times.
+constexpr const char* kVersion8 = R"sql(
+CREATE TABLE plan_part(
+  scan_id INTEGER NOT NULL REFERENCES scan,
+  name TEXT NOT NULL,
+  text TEXT NOT NULL,
+  PRIMARY KEY (scan_id, name)
+) STRICT, WITHOUT ROWID;
+ALTER TABLE point ADD COLUMN repeat INTEGER NOT NULL DEFAULT 1;
+)sql";
+
 constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4,
-                                                              kVersion5, kVersion6, kVersion7};
+                                                              kVersion5, kVersion6, kVersion7, kVersion8};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

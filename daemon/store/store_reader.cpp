@@ -177,6 +177,8 @@ class SqliteStoreReader final : public StoreReader {
                         .reference_sha256 = query.text(5),
                         .instrument_sha256 = query.text(6)};
     }
+    Statement& parts = database_->statement("SELECT name, text FROM plan_part WHERE scan_id = ?").bind(id);
+    while (texts && parts.next()) texts->plan_parts.emplace(parts.text(0), parts.text(1));
     GONIO_TRY(database_->take_error());
     if (!texts) return failure(no_such_scan(id));
     return *texts;

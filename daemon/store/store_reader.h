@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +54,7 @@ struct ScanInfo {
 struct ScanTexts {
   std::string plan;
   std::string plan_file;
+  std::map<std::string, std::string> plan_parts;  ///< the files that the plan names, by name
   std::string reference;
   std::string instrument;
   std::string plan_sha256;  ///< hex

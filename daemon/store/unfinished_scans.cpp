@@ -136,7 +136,7 @@ std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t
   Statement& query = database
                          .statement(
                              "SELECT point_index, rank, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, "
-                             "wavelength_nm, blocked FROM point WHERE scan_id = ? AND point_index > ? "
+                             "wavelength_nm, blocked, repeat FROM point WHERE scan_id = ? AND point_index > ? "
                              "ORDER BY point_index LIMIT ?")
                          .bind(scan)
                          .bind(after)
@@ -149,7 +149,8 @@ std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t
                                             .theta_r = degrees(query.real(4)),
                                             .phi_r = degrees(query.real(5))},
                                .wavelength = nanometres(query.real(6)),
-                               .blocked = query.integer(7) != 0});
+                               .blocked = query.integer(7) != 0,
+                               .repeat = static_cast<int>(query.integer(8))});
   }
   return points;
 }

@@ -33,6 +33,7 @@ json json_of(const SubmitScan& verb) {
           {"campaign", scan.campaign},
           {"plan", scan.plan_text},
           {"plan_file", scan.plan_file},
+          {"plan_parts", scan.plan_parts},
           {"reference", scan.reference_text},
           {"reference_serial", scan.reference_serial},
           {"submitted_by", scan.who}};
@@ -78,10 +79,11 @@ Result<Verb> submitted(const json& words, const Instrument& instrument) {
   scan.campaign = words.at("campaign");
   scan.plan_text = words.at("plan");
   scan.plan_file = words.at("plan_file");
+  scan.plan_parts = words.value("plan_parts", scan.plan_parts);
   scan.reference_text = words.at("reference");
   scan.reference_serial = words.at("reference_serial");
   scan.who = words.at("submitted_by");
-  const Result<api::Plan> plan = api::parse_plan(scan.plan_text, scan.plan_file);
+  const Result<api::Plan> plan = api::parse_plan(scan.plan_text, scan.plan_file, scan.plan_parts);
   if (!plan) return failure(plan.error());
   Result<PlannedScan> planned = expand(*plan, instrument);
   if (!planned) return failure(std::move(planned).error());

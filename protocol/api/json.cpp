@@ -72,7 +72,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 reference, instrument_sha256, submitted_utc, changed_utc, points,
                                                 merged, blocked, items, accepted, skipped, attempts, visits, spent,
                                                 seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
-                                                median_relative_u, worst_relative_u, plan, plan_file)
+                                                median_relative_u, worst_relative_u, plan, plan_file, plan_parts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
                                                 stage_stopped, active, queued, stage, stage_error, detector_error,
                                                 store_error, last_event)

@@ -8,97 +8,13 @@
 #include <cmath>
 
 #include "base/toml_reader.h"
+#include "protocol/api/plan_geometry.h"
+#include "protocol/api/toml_values.h"
 
 namespace gonio::api {
 namespace {
 
-constexpr std::size_t kLongestList = 100'000;
-constexpr double kMostPoints = 1e7;
-constexpr NumberRange kTheta{.least = 0.0, .most = 90.0, .unit = "deg"};
-constexpr NumberRange kPhi{.least = -360.0, .most = 360.0, .unit = "deg"};
-constexpr NumberRange kWavelength{.least = 100.0, .most = 20'000.0, .unit = "nm"};
 constexpr NumberRange kWait{.least = 1.0, .most = 1e6, .unit = "s"};
-
-// 3 * 0.1 is not 0.3; a nano-degree is far below what any axis resolves.
-double without_creep(double value) {
-  return std::round(value * 1e9) / 1e9;
-}
-
-// {from, to, step}: both ends included; `to` must be a whole number of steps away.
-std::vector<double> read_steps(TomlReader& geometry, std::string_view key, NumberRange range) {
-  TomlReader table = geometry.table(key);
-  const double from = table.number("from", range);
-  const double to = table.number("to", range);
-  const double step = table.number("step", {.least = 1e-6, .unit = range.unit});
-  if (table.has_failed()) return {};
-  if (to < from) {
-    table.fail("to", ErrorCode::InvalidInput, fmt::format("value {} {}", to, range.unit),
-               fmt::format("at least from = {} {}", from, range.unit));
-    return {};
-  }
-  const double steps = (to - from) / step;
-  const double whole = std::round(steps);
-  if (std::abs(steps - whole) > 1e-6) {
-    table.fail("step", ErrorCode::InvalidInput,
-               fmt::format("{} {} are not a whole number of steps from {} to {}", step, range.unit, from, to),
-               fmt::format("the last step ends at {} {}", without_creep(from + std::floor(steps) * step), range.unit));
-    return {};
-  }
-  if (whole >= static_cast<double>(kLongestList)) {
-    table.fail("step", ErrorCode::InvalidInput, fmt::format("{:.0f} values", whole + 1.0),
-               fmt::format("at most {} values", kLongestList));
-    return {};
-  }
-  std::vector<double> values;
-  for (double k = 0.0; k <= whole; k += 1.0) values.push_back(without_creep(from + k * step));
-  return values;
-}
-
-void refuse_repetition(TomlReader& geometry, std::string_view key, const std::vector<double>& values,
-                       std::string_view unit) {
-  std::vector<double> sorted = values;
-  std::ranges::sort(sorted);
-  const auto twice = std::ranges::adjacent_find(sorted);
-  if (twice == sorted.end()) return;
-  geometry.fail(key, ErrorCode::InvalidInput, fmt::format("{} {} stands here twice", *twice, unit), "each value once");
-}
-
-std::vector<double> read_list(TomlReader& geometry, std::string_view key, NumberRange range) {
-  if (geometry.kind(key) == TomlKind::Table) return read_steps(geometry, key, range);
-  std::vector<double> values = geometry.numbers(key, range);
-  if (values.size() > kLongestList) {
-    geometry.fail(key, ErrorCode::InvalidInput, fmt::format("{} values", values.size()),
-                  fmt::format("at most {} values", kLongestList));
-  }
-  refuse_repetition(geometry, key, values, range.unit);
-  return values;
-}
-
-std::vector<Angle> read_angles(TomlReader& geometry, std::string_view key, NumberRange range) {
-  std::vector<Angle> angles;
-  for (const double value : read_list(geometry, key, range)) angles.push_back(degrees(value));
-  return angles;
-}
-
-void read_geometry(TomlReader geometry, Plan& plan) {
-  plan.theta_i = read_angles(geometry, "theta_i_deg", kTheta);
-  const bool has_phi_i = geometry.kind("phi_i_deg") != TomlKind::Absent;
-  plan.phi_i = has_phi_i ? read_angles(geometry, "phi_i_deg", kPhi) : std::vector<Angle>{Angle{}};
-  plan.theta_r = read_angles(geometry, "theta_r_deg", kTheta);
-  plan.phi_r = read_angles(geometry, "phi_r_deg", kPhi);
-  for (const double value : read_list(geometry, "wavelength_nm", kWavelength)) {
-    plan.wavelengths.push_back(nanometres(value));
-  }
-  double points = 1.0;
-  for (const std::size_t n :
-       {plan.theta_i.size(), plan.phi_i.size(), plan.theta_r.size(), plan.phi_r.size(), plan.wavelengths.size()}) {
-    points *= static_cast<double>(n);
-  }
-  if (points > kMostPoints) {
-    geometry.fail("theta_i_deg", ErrorCode::InvalidInput, fmt::format("the lists make {:.0f} points", points),
-                  fmt::format("at most {:.0f} points", kMostPoints));
-  }
-}
 
 // A number or a list of them: what each reading is exposed for. All of them must fit into the time of a reading.
 std::vector<Duration> read_exposures(TomlReader& reading, Duration max_time) {
@@ -225,7 +141,8 @@ std::string needed_text(TomlReader& table, std::string_view key) {
 
 }  // namespace
 
-Result<Plan> parse_plan(std::string_view toml, const std::string& file) {
+Result<Plan> parse_plan(std::string_view toml, const std::string& file,
+                        const std::map<std::string, std::string>& files) {
   Result<TomlReader> root = TomlReader::parse(toml, file);
   if (!root) return failure(std::move(root).error());
   Plan plan;
@@ -233,7 +150,8 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file) {
   plan.name = needed_text(scan, "name");
   plan.sample = needed_text(scan, "sample");
   plan.isotropic = scan.flag_or("isotropic", true);
-  read_geometry(root->table("geometry"), plan);
+  Result<void> listed;
+  read_geometry(root->table("geometry"), files, plan, listed);
   read_reading(*root, plan);
   read_reference(root->table("reference"), plan);
   read_visits(*root, plan);
@@ -241,6 +159,7 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file) {
   read_on_error(*root, plan);
   read_on_restart(*root, plan);
   GONIO_TRY(root->finish());
+  GONIO_TRY(listed);
   return plan;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "base/units.h"
+#include "protocol/api/plan_part.h"
 
 namespace gonio::api {
 
@@ -17,8 +19,8 @@ enum class OnRestart : std::uint8_t { Resume, Hold };
 enum class ReferenceMode : std::uint8_t { SameGeometry };
 
 /// A plan as its author wrote it, checked for form (names, units, ranges of single values) but not yet for the
-/// instrument: limits, blocked geometries and the reference's reach are the planner's. The product of the lists,
-/// theta_i slowest.
+/// instrument: limits, blocked geometries and the reference's reach are the planner's. The points are those of the
+/// product of the lists, theta_i slowest (none when theta_r is empty), then those of the parts.
 struct Plan {
   std::string name;
   std::string sample;
@@ -28,8 +30,13 @@ struct Plan {
   std::vector<Angle> theta_r;
   std::vector<Angle> phi_r;
   std::vector<Wavelength> wavelengths;
-  double target_snr = 300.0;        ///< of one reading
-  Duration max_time{};              ///< of one reading, exposure times frames
+  int repeats = 1;  ///< of each point of the product
+  std::vector<PlanPart> parts;
+  /// Adds to each point the one with source and detector exchanged, where the arms can come to it.
+  bool is_reciprocal = false;
+  std::optional<bool> relative_azimuth;  ///< whether phi_r counts from phi_i; none: if the sample is isotropic
+  double target_snr = 300.0;             ///< of one reading
+  Duration max_time{};                   ///< of one reading, exposure times frames
   std::vector<Duration> exposures;  ///< [reading] exposure_s, ascending: one is fixed, several bracket; empty: chosen
   std::string reference_standard;   ///< serial number
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
@@ -47,7 +54,8 @@ struct Plan {
 };
 
 /// Errors: InvalidInput, UnknownKey, MissingKey, with file, line, field and nearest name. `file` is the user's name for
-/// it.
-[[nodiscard]] Result<Plan> parse_plan(std::string_view toml, const std::string& file);
+/// it; `files` the texts of the files that it names, by name.
+[[nodiscard]] Result<Plan> parse_plan(std::string_view toml, const std::string& file,
+                                      const std::map<std::string, std::string>& files = {});
 
 }  // namespace gonio::api

@@ -2,6 +2,7 @@
 
 // What the daemon answers, as values. Units stand in the names, as in the JSON of the same names (json.h).
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -100,8 +101,9 @@ struct ScanReport {
   std::optional<std::int64_t> brdf_values;  ///< once computed
   std::optional<double> median_relative_u;  ///< of the expanded uncertainties U (k = 2 or by dof) over the value
   std::optional<double> worst_relative_u;
-  std::optional<std::string> plan;       ///< as it was sent; of one scan asked for, not in lists
-  std::optional<std::string> plan_file;  ///< the user's name for it; likewise
+  std::optional<std::string> plan;                ///< as it was sent; of one scan asked for, not in lists
+  std::optional<std::string> plan_file;           ///< the user's name for it; likewise
+  std::map<std::string, std::string> plan_parts;  ///< the files that the plan names, by name; likewise
 };
 
 struct StatusReport {

@@ -116,6 +116,24 @@ TEST_F(Gonioctl, SendsThePlanVerbatimWithItsNameAndKey) {
   EXPECT_THAT(out_.str(), HasSubstr("scan  3"));
 }
 
+TEST_F(Gonioctl, SendsTheFilesThatAPlanNamesFromBesideIt) {
+  test::write_text(folder_ / "a.csv", "A");
+  test::write_text(folder_ / "b.csv", "B");
+  const std::string text = "[geometry]\npoints = 'a.csv'\n[[geometry.parts]]\npoints = 'b.csv'\n";
+  const std::string path = plan_file(text);
+
+  EXPECT_EQ(run({"scan", "run", path, "--key", "k7"}), 0);
+
+  EXPECT_THAT(service_.asked(), ElementsAre("submit " + path + " [" + text + "] key=k7 local a.csv=[A] b.csv=[B]"));
+}
+
+TEST_F(Gonioctl, AFileThatAPlanNamesAndThatIsNotThereIsNamedAndNothingIsSent) {
+  EXPECT_EQ(run({"scan", "run", plan_file("[geometry]\npoints = 'none.csv'\n")}), 2);
+
+  EXPECT_THAT(err_.str(), HasSubstr("none.csv"));
+  EXPECT_THAT(service_.asked(), IsEmpty());
+}
+
 TEST_F(Gonioctl, JsonIsTheDaemonsOwn) {
   EXPECT_EQ(run({"plan", "check", plan_file("x"), "-o", "json"}), 0);
 

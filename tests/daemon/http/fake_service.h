@@ -40,7 +40,9 @@ class FakeService final : public daemon::Service {
   }
   void submit_scan(const api::PlanSubmission& submission, const std::string& key, const std::string& who,
                    daemon::Reply<api::CommandReport> reply) override {
-    note("submit " + submission.plan_file + " [" + submission.plan + "] key=" + key + " " + who);
+    std::string parts;
+    for (const auto& [name, text] : submission.parts) parts += " " + name + "=[" + text + "]";
+    note("submit " + submission.plan_file + " [" + submission.plan + "] key=" + key + " " + who + parts);
     reply(api::CommandReport{.scan = 3, .existed = false});
   }
   void change_scan(std::int64_t scan, daemon::ScanVerb verb, const std::string& reason, const std::string& who,

@@ -138,5 +138,21 @@ TEST_F(OldStore, OfVersion1ShowsIdleTimeThatNobodyToldApartAsTheDaemonsOwn) {
   EXPECT_EQ(info->spent.idle.wire, Duration::zero());
 }
 
+TEST_F(OldStore, OfVersion1HasPlansWithoutFilesAndPointsThatAreMeasuredOnce) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto reader = StoreReader::open(path_);
+  ASSERT_TRUE(reader) << describe(reader.error());
+  const auto texts = (*reader)->texts(1);
+  const auto points = (*reader)->points(1, -1, 10);
+
+  ASSERT_TRUE(texts && points);
+  EXPECT_TRUE(texts->plan_parts.empty());
+  ASSERT_EQ(points->size(), 2U);
+  EXPECT_EQ(points->back().point.repeat, 1);
+}
+
 }  // namespace
 }  // namespace gonio::daemon
