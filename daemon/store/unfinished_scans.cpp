@@ -163,7 +163,8 @@ std::vector<Hold> read_holds(Database& database, ScanId scan, Instant now, UtcTi
                              "cleared_utc_ns IS NULL ORDER BY hold_id")
                          .bind(scan);
   while (query.next()) {
-    const Duration ago = utc_now.time_since_epoch() - Duration(query.integer(3));
+    // The wall clock may have been set back since.
+    const Duration ago = std::max(Duration::zero(), utc_now.time_since_epoch() - Duration(query.integer(3)));
     holds.push_back(Hold{.name = hold_from_name(query.text(0)).value_or(HoldName::Operator),
                          .owner = query.text(1),
                          .reason = query.text(2),

@@ -26,6 +26,7 @@ struct DiskState {
   std::string database;       ///< the last main file: its shared memory goes with the power
   int refusal = SQLITE_OK;
   std::function<bool(DiskOperation, const std::string&)> refuses;
+  std::function<void()> meanwhile;
 
   enum class Fate : std::uint8_t { Done, Begun, Refused };
   Fate fate_of(DiskOperation operation, const std::string& path) {
@@ -194,6 +195,12 @@ int delete_file(sqlite3_vfs* vfs, const char* name, int syncs_directory) {
   return disk.below->xDelete(disk.below, name, 0);
 }
 
+int pause(sqlite3_vfs* vfs, int microseconds) {
+  const auto& meanwhile = disk_of(vfs).meanwhile;
+  if (meanwhile) meanwhile();
+  return microseconds;
+}
+
 }  // namespace
 
 struct PowerCutDisk::Impl : DiskState {};
@@ -209,6 +216,7 @@ PowerCutDisk::PowerCutDisk(bool keeps_its_word) : impl_(std::make_unique<Impl>()
   impl_->vfs.pAppData = static_cast<DiskState*>(impl_.get());
   impl_->vfs.xOpen = open_file;
   impl_->vfs.xDelete = delete_file;
+  impl_->vfs.xSleep = pause;
   sqlite3_vfs_register(&impl_->vfs, 1);
 }
 
@@ -246,6 +254,10 @@ void PowerCutDisk::refuse(int code, std::function<bool(DiskOperation, const std:
   const std::lock_guard lock(impl_->mutex);
   impl_->refusal = code;
   impl_->refuses = std::move(fails);
+}
+
+void PowerCutDisk::while_waiting(std::function<void()> meanwhile) {
+  impl_->meanwhile = std::move(meanwhile);
 }
 
 }  // namespace gonio::test

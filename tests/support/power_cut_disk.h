@@ -36,6 +36,9 @@ class PowerCutDisk {
   /// An empty function ends it. `fails` is called with the kind and the file's path, under the disk's lock.
   void refuse(int code, std::function<bool(DiskOperation, const std::string&)> fails);
 
+  /// Who waits for a lock does so without time passing; `meanwhile` happens at each such pause.
+  void while_waiting(std::function<void()> meanwhile);
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -33,7 +33,7 @@ void ScanRig::start() {
 }
 
 Result<void> ScanRig::try_start() {
-  auto writer = StoreWriter::open({.path = path_, .boot_id = "boot", .version = "test"}, clock_);
+  auto writer = StoreWriter::open({.path = path_, .boot_id = "boot", .version = "test"}, wall_clock_);
   if (!writer) return failure(writer.error());
   writer_ = std::move(*writer);
   store_.emplace(*writer_);

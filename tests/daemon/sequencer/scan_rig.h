@@ -45,6 +45,19 @@ struct ScriptedInstrument {
   std::function<void()> during_reading = [] {};  ///< while the light is taken
 };
 
+/// A rig's clock as its store sees it: somebody may set the wall clock, forwards or back.
+class SettableClock final : public Clock {
+ public:
+  explicit SettableClock(const Clock& clock) : clock_(clock) {}
+  [[nodiscard]] Instant now() const override { return clock_.now(); }
+  [[nodiscard]] UtcTime utc_now() const override { return clock_.utc_now() + ahead_; }
+  void set_ahead_by(Duration more) { ahead_ += more; }
+
+ private:
+  const Clock& clock_;
+  Duration ahead_{};
+};
+
 /// Sequencer, real store and scripted instrument on a manual clock. Each request executed and each answer delivered is
 /// one step, so that a test can kill the daemon between any two.
 class ScanRig {
@@ -84,6 +97,7 @@ class ScanRig {
   [[nodiscard]] std::int64_t count(const std::string& query);
   [[nodiscard]] const std::string& store_path() const { return path_; }
   [[nodiscard]] ManualClock& clock() { return clock_; }
+  [[nodiscard]] SettableClock& wall_clock() { return wall_clock_; }
 
  private:
   using Action = std::function<void()>;
@@ -106,6 +120,7 @@ class ScanRig {
   ScratchFolder folder_;
   std::string path_;
   ManualClock clock_;
+  SettableClock wall_clock_{clock_};
   std::unique_ptr<StoreWriter> writer_;
   std::optional<StoreActor> store_;
   std::optional<Sequencer> sequencer_;
