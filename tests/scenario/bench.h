@@ -62,6 +62,8 @@ class Bench {
 
   /// The next daemon is to find its reference standards there.
   void use_references(const std::string& folder) { files_.references = folder; }
+  /// The next daemon is to find its instrument there.
+  void use_instrument(const std::string& file) { files_.instrument = file; }
   /// The next daemon is to record to this file.
   void record_to(const std::string& tape) { files_.tape = tape; }
   /// A new daemon on the same store, not waited for. One before it is killed.
