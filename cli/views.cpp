@@ -60,6 +60,12 @@ std::string stage_words(const api::StageReport& stage) {
   return words;
 }
 
+std::string order_text(const api::PlanOrder& order) {
+  if (order.bound_s <= 0.0) return duration_text(order.walk_s);
+  return fmt::format("{} a pass, {:.3f} of the bound ({})", duration_text(order.walk_s), order.walk_s / order.bound_s,
+                     order.bound);
+}
+
 }  // namespace
 
 std::string holds_text(const api::ScanReport& scan) {
@@ -125,8 +131,17 @@ Table view(const api::PlanReport& plan) {
       .add("merged", std::to_string(plan.merged))
       .add("blocked", std::to_string(plan.blocked))
       .add("items", std::to_string(plan.items))
-      .add("estimate", duration_text(plan.estimate_s))
-      .add("of_which", split_text(plan.estimate));
+      .add("out_of_reach", std::to_string(plan.out_of_reach))
+      .add("without_partner", std::to_string(plan.without_partner.size()))
+      .add("estimate", fmt::format("{} +- {}", duration_text(plan.estimate_s), duration_text(plan.u_estimate_s)))
+      .add("of_which", split_text(plan.estimate))
+      .add("as_written", duration_text(plan.walk.as_written_s))
+      .add("to_and_fro", duration_text(plan.walk.snaked_s))
+      .add("walk", order_text(plan.walk))
+      .add("visits", std::to_string(plan.visits))
+      .add("disk", fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(plan.disk_bytes)))
+      .add("expected_U", fmt::format("median {:.2f} %, worst {:.2f} %, of what is known before the sample is",
+                                     100.0 * plan.median_relative_u, 100.0 * plan.worst_relative_u));
   return facts.take();
 }
 

@@ -7,8 +7,10 @@
 #include "daemon/app/calibration_desk.h"
 #include "daemon/app/instrument_report.h"
 #include "daemon/app/plan_desk.h"
+#include "daemon/app/plan_outlook.h"
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
+#include "daemon/planner/order_report.h"
 
 namespace gonio::daemon {
 namespace {
@@ -66,7 +68,23 @@ NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, con
   return scan;
 }
 
-api::PlanReport plan_report(const CheckedPlan& checked) {
+void add_outlook(api::PlanReport& report, const CheckedPlan& checked, const Instrument& instrument) {
+  const OrderReport order = judge_order(checked.plan, instrument, checked.planned);
+  report.walk = {.walk_s = in_seconds(order.walk),
+                 .bound_s = in_seconds(order.bound),
+                 .bound = order.is_held_karp ? "Held-Karp" : "two nearest",
+                 .as_written_s = in_seconds(order.as_written),
+                 .snaked_s = in_seconds(order.snaked)};
+  if (!checked.reference.standard) return;
+  const PlanOutlook ahead = outlook(checked.plan, checked.planned, instrument, *checked.reference.standard);
+  report.u_estimate_s = ahead.u_estimate_s;
+  report.visits = ahead.visits;
+  report.disk_bytes = ahead.disk_bytes;
+  report.median_relative_u = ahead.median_relative_u;
+  report.worst_relative_u = ahead.worst_relative_u;
+}
+
+api::PlanReport plan_report(const CheckedPlan& checked, const Instrument& instrument) {
   api::PlanReport report;
   report.name = checked.plan.name;
   report.sample = checked.plan.sample;
@@ -82,6 +100,11 @@ api::PlanReport plan_report(const CheckedPlan& checked) {
   const std::size_t shown = std::min(kOrderShown, checked.planned.order.size());
   report.order.assign(checked.planned.order.begin(),
                       checked.planned.order.begin() + static_cast<std::ptrdiff_t>(shown));
+  const auto& alone = checked.planned.without_partner;
+  report.out_of_reach = checked.planned.out_of_reach;
+  report.without_partner.assign(alone.begin(),
+                                alone.begin() + static_cast<std::ptrdiff_t>(std::min(kOrderShown, alone.size())));
+  add_outlook(report, checked, instrument);
   return report;
 }
 
@@ -220,7 +243,7 @@ Result<api::PlanReport> DaemonService::check_plan(const api::PlanSubmission& sub
   const Result<CheckedPlan> checked =
       daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now());
   if (!checked) return failure(checked.error());
-  return plan_report(*checked);
+  return plan_report(*checked, parts_.instrument);
 }
 
 Result<api::ScanList> DaemonService::scans() {

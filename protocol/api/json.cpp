@@ -77,8 +77,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrumen
                                                 stage_stopped, active, queued, stage, stage_error, detector_error,
                                                 store_error, last_event)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HealthReport, ok, version)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanOrder, walk_s, bound_s, bound, as_written_s, snaked_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanReport, name, sample, reference, planner_version, asked, points,
-                                                merged, blocked, items, estimate, estimate_s, order)
+                                                merged, blocked, items, estimate, estimate_s, order, out_of_reach,
+                                                without_partner, walk, u_estimate_s, visits, disk_bytes,
+                                                median_relative_u, worst_relative_u)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointReport, index, rank, theta_i_deg, phi_i_deg, theta_r_deg,
                                                 phi_r_deg, wavelength_nm, blocked, sample, reference, attempts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfReport, point, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,

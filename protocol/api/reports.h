@@ -127,6 +127,15 @@ struct HealthReport {
   std::string version;
 };
 
+/// How good a plan's order is.
+struct PlanOrder {
+  double walk_s = 0.0;        ///< one pass through the points: motion and settling, nothing in the way
+  double bound_s = 0.0;       ///< no order has a shorter one
+  std::string bound;          ///< "Held-Karp", or "two nearest" beyond 1000 points
+  double as_written_s = 0.0;  ///< the whole scan in the order of the plan's text; 0: the arms cannot walk it
+  double snaked_s = 0.0;      ///< the whole scan to and fro along the axes
+};
+
 /// A dry run: what a plan would do on this instrument.
 struct PlanReport {
   std::string name;
@@ -140,7 +149,15 @@ struct PlanReport {
   std::int64_t items = 0;
   TimeSplit estimate;
   double estimate_s = 0.0;
-  std::vector<std::int64_t> order;  ///< of the points, the first 1000
+  std::vector<std::int64_t> order;            ///< of the points, the first 1000
+  std::int64_t out_of_reach = 0;              ///< of cones: left out
+  std::vector<std::int64_t> without_partner;  ///< points whose reciprocal the arms do not reach, the first 1000
+  PlanOrder walk;
+  double u_estimate_s = 0.0;  ///< standard uncertainty
+  std::int64_t visits = 0;    ///< of the dark, the standard and the sample
+  std::int64_t disk_bytes = 0;
+  double median_relative_u = 0.0;  ///< expected U / f (k = 2), of what is known before the sample is
+  double worst_relative_u = 0.0;
 };
 
 struct PointReport {
