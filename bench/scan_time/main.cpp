@@ -1,7 +1,7 @@
 // A step scan on goniosim at the speed of life (time_scale 1), whole programs over Modbus TCP and GigE Vision: what it
 // takes beside what its motions, settling and light must take; idle time by cause; what the dry run and the running
 // estimate had said.
-// Usage: bench_scan_time [POINTS]   (a multiple of 80; 2000 take about half an hour)
+// Usage: bench_scan_time [POINTS]   (a multiple of 80; 2000 take about 20 minutes)
 #include <fmt/format.h>
 
 #include <chrono>
@@ -35,7 +35,7 @@ double seconds_between(SteadyClock::time_point from, SteadyClock::time_point to)
 std::string step_plan(int points) {
   test::PlanOptions options;
   options.theta_i_deg = "[30]";
-  options.theta_r_deg = fmt::format("{{from = 1, to = {}, step = 1}}", kThetaSteps);
+  options.theta_r_deg = fmt::format("{{from = 40, to = {}, step = 0.25}}", 40.0 + 0.25 * (kThetaSteps - 1));
   options.phi_r_deg = fmt::format("{{from = 60, to = {}, step = 4}}", 60 + 4 * (points / kThetaSteps - 1));
   options.target_snr = 500.0;
   options.block_s = 120;

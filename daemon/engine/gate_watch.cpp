@@ -13,8 +13,10 @@ namespace {
 
 constexpr Duration kShortestPoll = std::chrono::milliseconds(1);
 constexpr Duration kLongestPoll = std::chrono::milliseconds(20);
-// The camera takes the trigger late, by about the same each time: so long after the expected end the looks are close.
-constexpr Duration kEager = std::chrono::milliseconds(20);
+// After the expected end the looks follow as closely as it is late: a device whose lag is short is not kept waiting,
+// one whose lag is long is not pestered.
+constexpr Duration kClosest = std::chrono::microseconds(100);
+constexpr int kPartOfLag = 4;
 
 }  // namespace
 
@@ -46,7 +48,7 @@ Result<drivers::MotionProgress> GateWatch::look(const drivers::StageState& seen,
   if (counted > 1 && counted <= UINT32_MAX / 2) {
     return failure(error(ErrorCode::StaleData, fmt::format("{} exposures counted", counted), "one"));
   }
-  const Duration poll = now < first_look() + kEager ? kShortestPoll : poll_;
+  const Duration poll = std::clamp<Duration>((now - first_look()) / kPartOfLag, kClosest, poll_);
   if (now < deadline_) return drivers::MotionProgress{false, std::min(now + poll, deadline_)};
   return failure(error(ErrorCode::TimedOut,
                        fmt::format("gate count {}, gate {}", gate.count, gate.open ? "still open" : "closed"),

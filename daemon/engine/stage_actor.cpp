@@ -182,6 +182,10 @@ Result<void> StageActor::add_shutters(Job& job, const MoveTo& request, const dri
   if (!request.source_shutter_open && !request.detector_shutter_open) return {};
   const bool source = request.source_shutter_open.value_or(before.source_shutter == stage::ShutterState::Open);
   const bool detector = request.detector_shutter_open.value_or(before.detector_shutter == stage::ShutterState::Open);
+  const auto stands = [](stage::ShutterState shutter, bool open) {
+    return shutter == (open ? stage::ShutterState::Open : stage::ShutterState::Closed);
+  };
+  if (stands(before.source_shutter, source) && stands(before.detector_shutter, detector)) return {};
   GONIO_TRY(stage_.set_shutters(source, detector));
   job.watches.push_back(watch_of(drivers::ShutterTask(config_, before, source, detector, before.at)));
   return {};

@@ -15,6 +15,7 @@
 #include "daemon/sequencer/scan_items.h"
 #include "daemon/sequencer/time_estimate.h"
 #include "daemon/sequencer/time_ledger.h"
+#include "daemon/sequencer/way_ahead.h"
 #include "daemon/store/records.h"
 
 namespace gonio::daemon {
@@ -120,9 +121,10 @@ struct ActiveScan {
   std::optional<Job> ahead;  ///< the next item, while the frame of the one in hand is still read: only its move
   TimeLedger ledger;         ///< while it is active
   IdleTime between;          ///< since the last job: goes into the next one's time
-  DurationStatistics sample_time;
-  DurationStatistics reference_time;
-  DurationStatistics dark_time;
+  EndEstimate end_estimate;
+  WayAhead way;
+  WayAhead::Turns turns;                           ///< to come, as of the last one
+  std::optional<calibration::Target> last_target;  ///< of this run
 
   /// While preparing: what is verified so far.
   enum class Preparation : std::uint8_t { Detector, Monitor, Look, LookAgain, Reset, Home, Verified, Shut, Zero };

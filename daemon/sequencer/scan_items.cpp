@@ -37,6 +37,7 @@ void ScanItems::decide(const ItemKey& item, Fate decided) {
 
 void ScanItems::pass_decided() {
   while (cursor_ < order_.size() && sample_[static_cast<std::size_t>(order_[cursor_])] != Fate::Open) ++cursor_;
+  while (!block_.empty() && reference_[static_cast<std::size_t>(block_.back())] != Fate::Open) block_.pop_back();
 }
 
 std::optional<ItemKey> ScanItems::next(Instant now) {
@@ -46,7 +47,6 @@ std::optional<ItemKey> ScanItems::next(Instant now) {
     if (cursor_ < order_.size() && !block_is_over) return ItemKey{order_[cursor_], Target::Sample};
     on_reference_ = true;
   }
-  while (!block_.empty() && reference_[static_cast<std::size_t>(block_.back())] != Fate::Open) block_.pop_back();
   if (!block_.empty()) return ItemKey{block_.back(), Target::Reference};
   on_reference_ = false;
   if (cursor_ < order_.size()) return ItemKey{order_[cursor_], Target::Sample};
@@ -79,8 +79,11 @@ std::optional<ItemKey> ScanItems::next_after(const ItemKey& item, Instant now) c
 
 void ScanItems::accept(const ItemKey& item, Instant now) {
   decide(item, Fate::Accepted);
-  if (item.target != Target::Sample) return;
   pass_decided();
+  if (item.target == Target::Reference) {  // `next` may not have been asked for it
+    on_reference_ = !block_.empty();
+    return;
+  }
   if (block_.empty()) block_began_ = now;
   block_.push_back(item.point);
 }

@@ -27,6 +27,12 @@ class ScanItems {
   /// Skipping a sample item skips its partner too: what is skipped, to be recorded.
   std::vector<ItemKey> give_up(const ItemKey& item);
 
+  [[nodiscard]] const std::vector<std::int32_t>& order() const { return order_; }
+  /// In the order: all before it are decided as samples.
+  [[nodiscard]] std::size_t cursor() const { return cursor_; }
+  /// How many references are owed to the block in hand.
+  [[nodiscard]] std::size_t owed() const { return block_.size(); }
+  [[nodiscard]] bool is_on_reference() const { return on_reference_; }
   [[nodiscard]] std::int64_t total() const { return 2 * static_cast<std::int64_t>(order_.size()); }
   [[nodiscard]] std::int64_t accepted() const { return accepted_; }
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }

@@ -327,7 +327,10 @@ void Sequencer::Impl::accept_item(Job& job, Instant now) {
   scan->failures.erase(job.item);
   scan->dark_owed = true;
   ++scan->uncommitted;
-  (job.item.target == Target::Sample ? scan->sample_time : scan->reference_time).add(job.time.total());
+  const bool is_turn = std::exchange(scan->last_target, job.item.target) != job.item.target;
+  scan->end_estimate.add_item(job.item.target, job.time, job.model, is_turn);
+  constexpr std::int64_t kEarly = 16;  // the way was hardly known at the first turn
+  if (is_turn || scan->items.accepted() == kEarly) look_at_turns();
   commit({.at = now, .writes = {attempt}, .events = {event_attempt(attempt, *job.measurement)}},
          {.done =
               [this](const CommitReceipt&, Instant) {

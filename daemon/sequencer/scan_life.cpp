@@ -253,6 +253,8 @@ void Sequencer::Impl::advance_measuring(Instant now) {
     const Command command = *std::exchange(scan->finish_command, std::nullopt);
     return transition(ScanEvent::Finish, now, command.who, "asked to finish", command.id);
   }
+  constexpr int kStepsAtOnce = 2;  // a few microseconds
+  scan->way.look_on(config.instrument, scan->points, scan->items.order(), kStepsAtOnce);
   if (!scan->job) choose_job(now);
   if (scan->job && !is_in_transition) drive_job(now);
 }

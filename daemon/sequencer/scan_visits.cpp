@@ -39,6 +39,10 @@ void Sequencer::Impl::choose_job(Instant now) {
 
 // ---- the dark ----
 
+int Sequencer::Impl::dark_frames() const {
+  return std::clamp(scan->most_frames, kFewestDarkFrames, kMostDarkFrames);
+}
+
 // The first dark of a run reads the whole ladder: the levels are needed to choose exposures, and whichever rung is used
 // later then has a dark on both sides. Later ones read the rungs in use and those between.
 void Sequencer::Impl::start_dark(Instant now) {
@@ -46,15 +50,14 @@ void Sequencer::Impl::start_dark(Instant now) {
   const std::size_t top = scan->chooser.rungs().size() - 1;
   const std::size_t lowest = is_first ? 0 : scan->lowest_rung.value_or(0);
   const std::size_t highest = is_first ? top : scan->highest_rung.value_or(top);
-  const int frames = std::clamp(scan->most_frames, kFewestDarkFrames, kMostDarkFrames);
   scan->job = new_job(Job::Kind::Dark, now);
-  scan->job->measurement = Measurement::of_dark(lowest, highest, frames);
+  scan->job->measurement = Measurement::of_dark(lowest, highest, dark_frames());
 }
 
 void Sequencer::Impl::accept_dark(Job& job, Instant now) {
   const NewVisit visit{
       .scan = scan->id, .time = job.time, .readings = job.measurement->readings(), .started = job.started};
-  scan->dark_time.add(job.time.total());
+  scan->end_estimate.add_dark(job.time);
   scan->last_dark = now;
   scan->dark_owed = false;
   scan->dark_failures = 0;

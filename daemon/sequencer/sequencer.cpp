@@ -268,19 +268,46 @@ Progress Sequencer::Impl::progress() const {
              .spent = scan->spent};
   p.blocked = p.points - p.items / 2;
   if (scan->job && scan->job->kind == Job::Kind::Item) p.in_hand = scan->job->item;
-  if (scan->sample_time.count() == 0 && scan->reference_time.count() == 0) return p;
-  // Until one of the targets was measured, the other stands for it.
-  const auto& sample = scan->sample_time.count() > 0 ? scan->sample_time : scan->reference_time;
-  const auto& reference = scan->reference_time.count() > 0 ? scan->reference_time : scan->sample_time;
-  const Remaining samples = remaining(sample, scan->items.open(calibration::Target::Sample));
-  const Remaining references = remaining(reference, scan->items.open(calibration::Target::Reference));
-  const double items_s = samples.time_s + references.time_s;
-  const double every_s = in_seconds(scan->policy.dark_every);
-  const auto visits = static_cast<std::int64_t>(every_s > 0.0 ? items_s / every_s : 0.0) + 1;
-  const Remaining darks = remaining(scan->dark_time, visits);
-  p.remaining = seconds(items_s + darks.time_s);
-  p.u_remaining = seconds(std::sqrt(samples.variance_s2 + references.variance_s2 + darks.variance_s2));
+  if (!scan->end_estimate.is_ready()) return p;
+  const Remaining left = scan->end_estimate.of(work_left());
+  p.remaining = seconds(left.time_s);
+  p.u_remaining = seconds(std::sqrt(left.variance_s2));
   return p;
+}
+
+// References follow the way of their samples backwards.
+WorkLeft Sequencer::Impl::work_left() const {
+  const ScanItems& items = scan->items;
+  const WayAhead::Length ahead = scan->way.between(items.cursor(), items.order().size());
+  const WayAhead::Length back =
+      scan->way.between(items.cursor() - std::min(items.cursor(), items.owed()), items.cursor());
+  constexpr double kUnseen = 0.1;  // of the way not looked at yet, relative
+  WorkLeft left{.samples = items.open(calibration::Target::Sample),
+                .references = items.open(calibration::Target::Reference),
+                .way_s = 2.0 * ahead.time_s + back.time_s,
+                .u_way_s = kUnseen * (2.0 * ahead.unseen_s + back.unseen_s),
+                .turns_s = scan->turns.time_s,
+                .u_turns_s = scan->turns.u_s,
+                .dark_every = scan->policy.dark_every};
+  const auto& rungs = scan->chooser.rungs();
+  for (std::size_t rung = scan->lowest_rung.value_or(0); rung <= scan->highest_rung.value_or(0); ++rung) {
+    left.dark_light += dark_frames() * rungs[rung];
+  }
+  return left;
+}
+
+// At each turn, since it is not quite cheap.
+void Sequencer::Impl::look_at_turns() {
+  const ScanItems& items = scan->items;
+  const drivers::AxisConfig& carriage = config.instrument.stage.axis(stage::Axis::Carriage);
+  const CarriagePositions& places = config.instrument.carriage;
+  const double way = in_millimetres(places.reference) - in_millimetres(places.sample);
+  scan->turns = scan->way.turns(config.instrument, scan->points, items.order(),
+                                {.begun = items.cursor() - std::min(items.cursor(), items.owed()),
+                                 .is_on_reference = items.is_on_reference(),
+                                 .work_s = scan->end_estimate.sample_work_s(),
+                                 .pass_s = in_seconds(scan->policy.block) / 2.0,
+                                 .to_reference_s = in_seconds(travel_time(carriage, way) + carriage.settle)});
 }
 
 SequencerStatus Sequencer::Impl::status(Instant /*now*/) const {

@@ -83,6 +83,8 @@ struct Sequencer::Impl {
   void store_failed(const Error& error, std::optional<CommandId> command);
   [[nodiscard]] SequencerStatus status(Instant now) const;
   [[nodiscard]] Progress progress() const;
+  [[nodiscard]] WorkLeft work_left() const;
+  void look_at_turns();
   [[nodiscard]] std::string_view doing() const;
 
   // ---- life (scan_life.cpp) ----
@@ -148,6 +150,8 @@ struct Sequencer::Impl {
   // ---- visits, and which job is next (scan_visits.cpp) ----
   void choose_job(Instant now);
   [[nodiscard]] VisitClocks visit_clocks() const;
+  /// Of each rung of the next dark.
+  [[nodiscard]] int dark_frames() const;
   /// Whether a visit is due, or might be once its detour is looked at.
   [[nodiscard]] bool visit_may_be_next(Instant now) const;
   void start_dark(Instant now);

@@ -12,9 +12,10 @@ namespace {
 
 constexpr Duration kShortestPoll = std::chrono::milliseconds(1);
 constexpr Duration kLongestPoll = std::chrono::milliseconds(20);
-// A stage is late by its own reaction, by about the same each time: so long after the predicted arrival the looks are
-// close.
-constexpr Duration kEager = std::chrono::milliseconds(20);
+// After the predicted arrival the looks follow as closely as it is late: a stage whose lag is short is not kept
+// waiting, one whose lag is long is not pestered.
+constexpr Duration kClosest = std::chrono::microseconds(100);
+constexpr int kPartOfLag = 4;
 
 }  // namespace
 
@@ -55,8 +56,8 @@ Result<MotionProgress> MoveTask::look(const StageState& seen, Instant now) {
   if (settled && *settled <= now) return MotionProgress{true, now};
   if (is_overdue(settled, now)) return failure(late(seen, *accepted));
   const Instant arrival = predicted_arrival();
-  const bool is_due = !settled && accepted_at_ && now >= arrival && now < arrival + kEager;
-  Instant next = now + (is_due ? kShortestPoll : poll_);
+  const bool is_due = !settled && accepted_at_ && now >= arrival;
+  Instant next = now + (is_due ? std::clamp<Duration>((now - arrival) / kPartOfLag, kClosest, poll_) : poll_);
   if (settled) next = std::min(next, *settled);
   if (accepted_at_ && !settled && now < arrival) next = std::min(now + kLongestUnseen, arrival);
   return MotionProgress{false, std::min(next, std::max(deadline_, now + kShortestPoll))};

@@ -17,7 +17,7 @@ namespace gonio::drivers {
 /// Done is not there: the move counts when our command was accepted, no fault came up, nobody stopped the stage, and
 /// for every named axis the looks of a whole settle time found the encoder in its window and the axis at rest. The
 /// first look comes when the move should be over (or after `kLongestUnseen`, to see a fault in a long one), then looks
-/// follow closely for a while, then at a quarter of the shortest settle time.
+/// follow at a quarter of its lateness, at most a quarter of the shortest settle time apart.
 class MoveTask {
  public:
   static constexpr Duration kLongestUnseen = std::chrono::milliseconds(250);

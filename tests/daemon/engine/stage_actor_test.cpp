@@ -148,6 +148,19 @@ TEST_F(StageActorTest, LooksOnlyAFewTimesAtALongMove) {
   EXPECT_LE(stage.looks, 30);
 }
 
+TEST_F(StageActorTest, ShuttersThatStandAsAskedAreNotToldAgain) {
+  stage.state.source_shutter = stage::ShutterState::Open;
+  MoveTo request = move(1, 10.0);
+  request.source_shutter_open = true;
+  request.detector_shutter_open = false;
+
+  ask(request);
+  run_for_answers(1);
+
+  EXPECT_TRUE(std::ranges::none_of(stage.told, [](const auto& told) { return told.starts_with("shutters"); }));
+  EXPECT_TRUE(answers[0].state.has_value());
+}
+
 TEST_F(StageActorTest, SetsTheShuttersThatWereNamedAndLeavesTheOther) {
   stage.state.detector_shutter = stage::ShutterState::Open;
   MoveTo request{.ticket = 1, .epoch = 0, .target = {}, .source_shutter_open = true, .detector_shutter_open = {}};

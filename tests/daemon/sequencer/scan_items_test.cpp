@@ -53,6 +53,24 @@ TEST(ScanItems, WhatIsNextAfterAnItemIsKnownBeforeItIsAccepted) {
   EXPECT_EQ(items.accepted(), 80);
 }
 
+TEST(ScanItems, TakenAsForeseenTheyMakeTheSameBlocks) {
+  std::vector<std::int32_t> order(40);
+  std::iota(order.begin(), order.end(), 0);
+  ScanItems asked(40, order, seconds(21), {}, {});
+  ScanItems foreseen(40, order, seconds(21), {}, {});
+
+  Instant now = kStart;
+  auto item = foreseen.next(now);
+  for (; item; now += seconds(1)) {
+    ASSERT_EQ(item, asked.next(now));
+    asked.accept(*item, now);
+    const auto next = foreseen.next_after(*item, now + seconds(1));
+    foreseen.accept(*item, now);
+    item = next;
+  }
+  EXPECT_EQ(foreseen.accepted(), 80);
+}
+
 TEST(ScanItems, PartnersLieWithinTheBlocksTime) {
   std::vector<std::int32_t> order(40);
   for (int k = 0; k < 40; ++k) order[static_cast<std::size_t>(k)] = k;
