@@ -65,6 +65,14 @@ drivers::AxisConfig read_axis(TomlReader& table, std::string_view unit) {
   return axis;
 }
 
+// Drives are started one after the other: what they walk together is not a line.
+void read_coordination(TomlReader& table, drivers::StageConfig& stage) {
+  stage.coordinated = table.flag_or("coordinated", false);
+  if (!stage.coordinated || !stage.drives) return;
+  table.fail("coordinated", ErrorCode::InvalidInput, "value true",
+             "false for a stage of drives: each is started alone");
+}
+
 drivers::StageConfig read_stage_config(TomlReader& table) {
   drivers::StageConfig stage;
   stage.reply_timeout = time(table, "reply_timeout_s");
@@ -80,6 +88,7 @@ drivers::StageConfig read_stage_config(TomlReader& table) {
   }
   read_kinematics(table, stage);
   read_stage_kind(table, stage);
+  read_coordination(table, stage);
   read_keep_out(table, stage);
   return stage;
 }

@@ -7,7 +7,28 @@ namespace gonio::daemon {
 
 using stage::Axis;
 
-StepPrice::StepPrice(const Instrument& instrument, std::span<const Place> places) {
+namespace {
+
+/// Axes that go the same part of their ways in the same time (drivers/motion/leg_axes.h).
+struct SharedWay {
+  double per_speed_s = 0.0;          ///< the largest distance / speed
+  double per_acceleration_s2 = 0.0;  ///< the largest distance / acceleration
+
+  void add(double distance, double speed, double acceleration) {
+    per_speed_s = std::max(per_speed_s, distance / speed);
+    per_acceleration_s2 = std::max(per_acceleration_s2, distance / acceleration);
+  }
+  [[nodiscard]] double time_s() const {
+    return per_speed_s * per_speed_s >= per_acceleration_s2 && per_speed_s > 0.0
+               ? per_speed_s + per_acceleration_s2 / per_speed_s
+               : 2.0 * std::sqrt(per_acceleration_s2);
+  }
+};
+
+}  // namespace
+
+StepPrice::StepPrice(const Instrument& instrument, std::span<const Place> places)
+    : is_coordinated_(instrument.stage.coordinated) {
   for (const Axis axis : stage::kAllAxes) {
     const std::size_t a = stage::index_of(axis);
     const drivers::AxisConfig& how = instrument.stage.axis(axis);
@@ -37,6 +58,8 @@ double StepPrice::travel_s(const AxisPrice& axis, double distance) {
 }
 
 double StepPrice::way_s(const Place& from, const Place& to) const {
+  SharedWay first;
+  SharedWay last;
   double first_s = 0.0;
   double last_s = 0.0;
   double settle_s = 0.0;
@@ -47,9 +70,17 @@ double StepPrice::way_s(const Place& from, const Place& to) const {
     if (way * axis.side < -axis.window) {
       distance += axis.overrun;
       last_s = std::max(last_s, axis.overrun_s);
+      if (is_coordinated_) last.add(axis.overrun, axis.speed, axis.acceleration);
     }
-    first_s = std::max(first_s, travel_s(axis, distance));
+    if (is_coordinated_)
+      first.add(distance, axis.speed, axis.acceleration);
+    else
+      first_s = std::max(first_s, travel_s(axis, distance));
     settle_s = std::max(settle_s, axis.settle_s);
+  }
+  if (is_coordinated_) {
+    first_s = first.time_s();
+    last_s = last.time_s();
   }
   return first_s + last_s + (last_s > 0.0 ? settle_of_all_s_ : settle_s);
 }

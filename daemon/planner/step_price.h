@@ -10,7 +10,8 @@ namespace gonio::daemon {
 /// Where the axes stand at a point of a plan, in their units.
 using Place = stage::PerAxis<double>;
 
-/// What a step from one place to another costs, in s, when nothing is in the way: the slowest axis from rest to rest,
+/// What a step from one place to another costs, in s, when nothing is in the way: the slowest axis from rest to rest
+/// (or all together, where moves are coordinated),
 /// turning points against backlash, and the settling, as `step_time` has them, without looking for the other arm. Cheap
 /// enough to be asked millions of times. Axes that stand still in all of `places` are left out.
 class StepPrice {
@@ -46,6 +47,7 @@ class StepPrice {
   std::vector<AxisPrice> prices_;
   double settle_of_all_s_ = 0.0;  ///< a step that turns ends with a leg that names every axis
   bool has_sides_ = false;
+  bool is_coordinated_ = false;
 };
 
 }  // namespace gonio::daemon

@@ -6,6 +6,7 @@
 
 #include "drivers/kinematics/kinematics.h"
 #include "drivers/motion/axis_profile.h"
+#include "drivers/motion/leg_axes.h"
 
 namespace gonio::drivers {
 namespace {
@@ -34,8 +35,9 @@ double largest_sine(double from_deg, double to_deg) {
 class Path {
  public:
   Path(const StageConfig& config, const stage::PerAxis<double>& from, const MotionTarget& to) : config_(config) {
+    const stage::PerAxis<AxisConfig> axes = axes_on_leg(config, from, to);
     for (std::size_t a = 0; a < stage::kAxisCount; ++a) {
-      profiles_[a] = AxisProfile(from[a], to[a].value_or(from[a]), config.axes[a]);
+      profiles_[a] = AxisProfile(from[a], to[a].value_or(from[a]), axes[a]);
       end_s_ = std::max(end_s_, profiles_[a].duration_s());
     }
   }

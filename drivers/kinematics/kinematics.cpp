@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "drivers/kinematics/turning_sample.h"
-#include "drivers/motion/travel_time.h"
+#include "drivers/motion/leg_axes.h"
 
 namespace gonio::drivers {
 namespace {
@@ -71,7 +71,6 @@ class WayBuilder {
     const std::size_t a = index_of(axis);
     const AxisConfig& how = config_.axes[a];
     way_.target[a] = position;
-    way_.travel = std::max(way_.travel, travel_time(position - standing_[a], how.speed, how.acceleration));
     if (const double b = beyond(how, position); b > kLimitSlack && b > way_.worst_beyond) {
       way_.worst_beyond = b;
       way_.worst_axis = axis;
@@ -79,7 +78,11 @@ class WayBuilder {
       way_.target[a] = std::clamp(position, how.low, how.high);
     }
   }
-  [[nodiscard]] const Way& way() const { return way_; }
+  [[nodiscard]] Way way() const {
+    Way way = way_;
+    way.travel = leg_time(config_, standing_, way.target);
+    return way;
+  }
 
  private:
   const StageConfig& config_;

@@ -155,7 +155,7 @@ Result<MotionToken> ModbusStage::start_move(const MotionTarget& target, Epoch ep
   words.set(Field::MotionEpoch, epoch);
   words.set(Field::MotionToken, *token);
   words.set(Field::MotionMask, mask);
-  words.set(Field::MotionCommand, stage::kCommandMove);
+  words.set(Field::MotionCommand, config_.coordinated ? stage::kCommandMoveTogether : stage::kCommandMove);
   return send_motion(words.take(), *token, motion_text(target));
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/motion/travel_time.h"
+#include "drivers/motion/leg_axes.h"
 
 namespace gonio::drivers {
 namespace {
@@ -34,12 +34,12 @@ MoveTask::MoveTask(const StageConfig& config, const StageState& before, const Mo
                    Epoch epoch, Instant now, Ending ending)
     : axes_(config.axes), target_(target), watch_(before, token, epoch, motion_text(target)), started_(now) {
   poll_ = kLongestPoll;
+  travel_ = leg_time(config, positions_of(before), target);
   for (const stage::Axis axis : stage::kAllAxes) {
     const std::size_t i = stage::index_of(axis);
     if (!target_[i]) continue;
     if (ending == Ending::Rest) axes_[i].settle = Duration::zero();
     const AxisConfig& how = axes_[i];
-    travel_ = std::max(travel_, travel_time(*target_[i] - before.axes[i].position, how.speed, how.acceleration));
     settle_ = std::max(settle_, how.settle);
     poll_ = std::min(poll_, how.settle / 4);
   }

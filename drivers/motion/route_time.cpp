@@ -1,8 +1,6 @@
 #include "drivers/motion/route_time.h"
 
-#include <algorithm>
-
-#include "drivers/motion/travel_time.h"
+#include "drivers/motion/leg_axes.h"
 
 namespace gonio::drivers {
 
@@ -15,14 +13,8 @@ stage::PerAxis<double> after(const stage::PerAxis<double>& from, const MotionTar
 Duration route_time(const StageConfig& config, stage::PerAxis<double> from, std::span<const MotionTarget> legs) {
   Duration total{};
   for (const MotionTarget& leg : legs) {
-    const stage::PerAxis<double> to = after(from, leg);
-    Duration slowest{};
-    for (std::size_t a = 0; a < to.size(); ++a) {
-      if (to[a] == from[a]) continue;
-      slowest = std::max(slowest, travel_time(to[a] - from[a], config.axes[a].speed, config.axes[a].acceleration));
-    }
-    total += slowest;
-    from = to;
+    total += leg_time(config, from, leg);
+    from = after(from, leg);
   }
   return total;
 }

@@ -100,6 +100,7 @@ inline constexpr std::uint16_t kHaltKey = 0x5A5A;
 inline constexpr std::uint16_t kResetKey = 0x4B4B;
 inline constexpr std::uint16_t kCommandMove = 1;
 inline constexpr std::uint16_t kCommandHome = 2;
+inline constexpr std::uint16_t kCommandMoveTogether = 3;  ///< start and arrive together
 
 /// Bits of `status`.
 enum class StatusBit : std::uint8_t { Moving, Homed, Halted, HeartbeatTripped, Fault, InterlockOpen };

@@ -61,6 +61,8 @@ class AxisModel {
   [[nodiscard]] std::uint16_t fault() const { return fault_; }
   [[nodiscard]] std::uint64_t last_move() const { return last_move_; }
   [[nodiscard]] const AxisSpec& spec() const { return spec_; }
+  /// What it can do, per wall time.
+  [[nodiscard]] const AxisDynamics& dynamics() const { return dynamics_; }
 
  private:
   void start(double target, const AxisDynamics& dynamics, std::uint64_t move, Instant now);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 namespace gonio::sim {
 
@@ -84,7 +86,7 @@ void StageModel::brake_all(Instant now) {
 
 Refusal StageModel::judge(const MotionCommand& command, Instant now) const {
   constexpr unsigned kAllMasked = (1U << stage::kAxisCount) - 1U;
-  const bool is_move = command.command == stage::kCommandMove;
+  const bool is_move = command.command == stage::kCommandMove || command.command == stage::kCommandMoveTogether;
   if (!is_move && command.command != stage::kCommandHome) return Refusal::BadCommand;
   if (is_move && (command.mask == 0 || command.mask > kAllMasked)) return Refusal::BadCommand;
   if (command.epoch < epoch_) return Refusal::EpochTooOld;
@@ -113,14 +115,43 @@ void StageModel::command_motion(const MotionCommand& command, Instant now) {
   answer_.accepted_token = command.token;
   ++moves_;
   ++motion_commands_;
+  for (AxisModel& axis : axes_) {
+    if (command.command == stage::kCommandHome) axis.home(moves_, now);
+  }
+  if (command.command == stage::kCommandMove) move_each(command, now);
+  if (command.command == stage::kCommandMoveTogether) move_together(command, now);
+  advance_to(now);  // an axis that stands at its home already is homed at once
+}
+
+void StageModel::move_each(const MotionCommand& command, Instant now) {
+  for (const Axis a : stage::kAllAxes) {
+    if (!is_masked(command, a)) continue;
+    AxisModel& axis = axes_[stage::index_of(a)];
+    axis.move_to(axis.target_of_counts(command.targets[stage::index_of(a)]), moves_, now);
+  }
+}
+
+// All go the same part of their ways in the same time: what one may do, as a part of its way, all do.
+void StageModel::move_together(const MotionCommand& command, Instant now) {
+  stage::PerAxis<double> ways{};
+  AxisDynamics common{.speed = std::numeric_limits<double>::infinity(),
+                      .acceleration = std::numeric_limits<double>::infinity()};
+  for (const Axis a : stage::kAllAxes) {
+    const AxisModel& axis = axes_[stage::index_of(a)];
+    double& way = ways[stage::index_of(a)];
+    if (!is_masked(command, a)) continue;
+    way = std::abs(axis.target_of_counts(command.targets[stage::index_of(a)]) - axis.position(now));
+    if (way == 0.0) continue;
+    common.speed = std::min(common.speed, axis.dynamics().speed / way);
+    common.acceleration = std::min(common.acceleration, axis.dynamics().acceleration / way);
+  }
   for (const Axis a : stage::kAllAxes) {
     AxisModel& axis = axes_[stage::index_of(a)];
-    if (command.command == stage::kCommandHome)
-      axis.home(moves_, now);
-    else if (is_masked(command, a))
-      axis.move_to(axis.target_of_counts(command.targets[stage::index_of(a)]), moves_, now);
+    if (!is_masked(command, a)) continue;
+    const double way = ways[stage::index_of(a)];
+    const AxisDynamics own = way == 0.0 ? axis.dynamics() : AxisDynamics{common.speed * way, common.acceleration * way};
+    axis.move_to(axis.target_of_counts(command.targets[stage::index_of(a)]), own, moves_, now);
   }
-  advance_to(now);  // an axis that stands at its home already is homed at once
 }
 
 void StageModel::halt(std::uint32_t epoch, Instant now) {

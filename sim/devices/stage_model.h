@@ -135,6 +135,8 @@ class StageModel {
   [[nodiscard]] std::optional<Instant> drive_watch_due(stage::Axis axis) const;
   void trip_drives(Instant now);
   [[nodiscard]] stage::Refusal judge(const MotionCommand& command, Instant now) const;
+  void move_each(const MotionCommand& command, Instant now);
+  void move_together(const MotionCommand& command, Instant now);
   [[nodiscard]] std::optional<Instant> heartbeat_due() const;
   [[nodiscard]] stage::PerAxis<std::int32_t> latched(Instant now) const;
   void brake_all(Instant now);

@@ -216,6 +216,16 @@ TEST_F(ModbusStageTest, WritesAMoveAsOneBlockThatEndsWithTheCommand) {
               ElementsAre(ElementsAre(1, 2, *token, 0b10, 0, 0, 6, 0xDDD0, 0, 0, 0, 0, 0, 0, 0, 0, 1)));
 }
 
+TEST_F(ModbusStageTest, AsksForAMoveOnALineWhereMovesAreCoordinated) {
+  config.coordinated = true;
+
+  const auto token = stage.start_move(theta_r_to(45.0), 0x00010002);
+
+  ASSERT_TRUE(token) << describe(token.error());
+  ASSERT_EQ(link.writes_to(kMotionBlock).size(), 1U);
+  EXPECT_EQ(link.writes_to(kMotionBlock)[0].back(), 3);
+}
+
 TEST_F(ModbusStageTest, WritesHomingForAllAxes) {
   const auto token = stage.start_homing(3);
 

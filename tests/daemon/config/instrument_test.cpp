@@ -86,6 +86,15 @@ TEST(Instrument, HasAKeepOutOnlyWhereItIsNamed) {
   EXPECT_NEAR(in_degrees(with_it.stage.keep_out->least_separation()), 11.00584, 1e-5);  // asin(105 / 550)
 }
 
+TEST(Instrument, CoordinatesMovesOnlyWhereItIsAskedTo) {
+  const Instrument without = read(whole_text());
+  const Instrument with_it =
+      read(with(whole_text(), "\nheartbeat_timeout_s", "\ncoordinated = true\nheartbeat_timeout_s"));
+
+  EXPECT_FALSE(without.stage.coordinated);
+  EXPECT_TRUE(with_it.stage.coordinated);
+}
+
 TEST(Instrument, RefusesHeadsThatCanNeverPassEachOther) {
   std::string huge(kKeepOut);
   const std::size_t at = huge.find("margin_mm = 10.0");

@@ -138,8 +138,11 @@ TEST(OrderReport, BoundsTheShortestWalkThatTryingAllFindsFromBelowAndNearly) {
   }
 }
 
-TEST(StepPrice, IsWhatAStepTakesWhenNothingIsInTheWay) {
-  const Instrument instrument = instrument_with_side();
+class StepPriceOfMoves : public testing::TestWithParam<bool> {};
+
+TEST_P(StepPriceOfMoves, IsWhatAStepTakesWhenNothingIsInTheWay) {
+  Instrument instrument = instrument_with_side();
+  instrument.stage.coordinated = GetParam();
   const auto points = random_points(60, 11);
   std::vector<std::int32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
@@ -155,6 +158,10 @@ TEST(StepPrice, IsWhatAStepTakesWhenNothingIsInTheWay) {
     EXPECT_NEAR(price.way_s(places[k - 1], places[k]), in_seconds(step->move + step->settle), 1e-6) << k;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Stages, StepPriceOfMoves, testing::Bool(), [](const auto& is_coordinated) {
+  return is_coordinated.param ? "coordinated" : "each_axis_by_itself";
+});
 
 TEST(Neighbours, AreTheCheapestOnesThatLookingAtAllFinds) {
   const Instrument instrument = bench_instrument();
