@@ -44,8 +44,8 @@ class MoveTogether : public testing::Test {
   Bench bench;
 };
 
-// theta_i 20 deg/s, 40 deg/s^2; phi_r 40 and 80: 60 deg of the one are 60 of 20, 10 of the other hurry less. The part
-// of the way that all have gone is theta_i's own trapezoid: 60 / 20 + 20 / 40 = 3.5 s.
+// Of all, 60 deg of theta_i (20 deg/s, 40 deg/s^2) take the longest, by speed and by acceleration: 60 / 20 + 20 / 40 =
+// 3.5 s.
 TEST_F(MoveTogether, KeepsAllAxesOnTheLineBetweenTheEnds) {
   command(stage::kCommandMoveTogether,
           {{Axis::ThetaI, 60.0}, {Axis::ThetaR, 15.0}, {Axis::PhiR, -100.0}, {Axis::Carriage, 120.0}});
@@ -76,12 +76,12 @@ TEST_F(MoveTogether, AnAxisAloneGoesAsFastAsItCan) {
   EXPECT_FALSE(is_moving(Axis::ThetaI));
 }
 
-// 100 mm of the carriage limit the speed (100 mm/s: 1 a second), 3 slots of the wheel would limit it to 2 / 3 a second
-// and the acceleration to 8 / 3: 1.5 s + 0.25 s.
+// Parts of the way: 3 slots of the wheel limit the speed to 2 / 3 a second, 100 mm of the carriage the acceleration to
+// 200 / 100 a second squared: 3 / 2 + (2 / 3) / 2 s.
 TEST_F(MoveTogether, TakesTheSlowestSpeedAndTheSlowestAcceleration) {
   command(stage::kCommandMoveTogether, {{Axis::Carriage, 100.0}, {Axis::FilterWheel, 4.0}});
 
-  bench.wait(1.749);
+  bench.wait(1.833);
   EXPECT_TRUE(is_moving(Axis::Carriage) && is_moving(Axis::FilterWheel));
   bench.wait(0.002);
   EXPECT_FALSE(is_moving(Axis::Carriage) || is_moving(Axis::FilterWheel));
