@@ -84,8 +84,9 @@ class Stage {
   /// Errors: Unreachable, TimedOut, BadReply, WrongDevice. Reconnects by itself on the next call after a failure.
   [[nodiscard]] virtual Result<StageState> read_state() = 0;
 
-  /// Starts all named axes at once, coordinated where the configuration says so; returns when the stage has been told, not when it has accepted (`accepted_token`
-  /// says). Errors: as read_state, OutOfLimits (nothing was sent), DeviceRefused.
+  /// Starts all named axes at once, coordinated where the configuration says so; returns when the stage has been told,
+  /// not when it has accepted (`accepted_token` says). Errors: as read_state, OutOfLimits (nothing was sent),
+  /// DeviceRefused.
   [[nodiscard]] virtual Result<MotionToken> start_move(const MotionTarget& target, Epoch epoch) = 0;
   /// Homes all axes.
   [[nodiscard]] virtual Result<MotionToken> start_homing(Epoch epoch) = 0;

@@ -35,7 +35,8 @@ struct StageConfig {
   /// Whether the stage latches encoders and monitor over an exposure by itself; without, they are looked at around it.
   bool has_gate = true;
   stage::PerAxis<AxisConfig> axes{};
-  /// Whether all axes of a move start and arrive together, on a straight line in axis space; else each goes its own way.
+  /// Whether all axes of a move start and arrive together, on a straight line in axis space; else each goes its own
+  /// way.
   bool coordinated = false;
   KinematicsConfig kinematics;      ///< how axes make directions
   std::optional<KeepOut> keep_out;  ///< what must not meet on any path; off unless named

@@ -19,8 +19,9 @@ struct PathConflict {
 };
 
 /// Looks along a move in which all named axes start at once from rest at `from`, each with its own speed and
-/// acceleration, or along a straight line where moves are coordinated (`axes_on_leg`). Nothing: the arms keep the least angle of `config.keep_out` on the whole path (proven), or the
-/// keep-out is off, or neither arm moves. A move that starts too near must not come nearer, and must end clear.
+/// acceleration, or along a straight line where moves are coordinated (`axes_on_leg`). Nothing: the arms keep the least
+/// angle of `config.keep_out` on the whole path (proven), or the keep-out is off, or neither arm moves. A move that
+/// starts too near must not come nearer, and must end clear.
 ///
 /// Bound: between two instants the angle xi between the arms changes by no more than
 ///   |d theta_i| + |d theta_r| + min(sin theta_i, sin theta_r) (|d phi_i| + |d phi_r|)   (arms)
