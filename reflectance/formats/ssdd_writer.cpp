@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <span>
 
@@ -15,7 +14,9 @@ using reflectance::Direction;
 using reflectance::TableSymmetry;
 
 Result<void> check_ssdd_axis(std::string_view name, const std::vector<double>& values, double most) {
-  const bool rises = std::ranges::adjacent_find(values, std::greater_equal<double>()) == values.end();
+  // Not "at least": NaN must not pass.
+  const auto does_not_rise = [](double a, double b) { return !(a < b); };
+  const bool rises = std::ranges::adjacent_find(values, does_not_rise) == values.end();
   if (rises && !values.empty() && values.front() >= 0.0 && values.back() <= most) return {};
   return failure({.code = ErrorCode::InvalidInput,
                   .tried = "write SSDD",

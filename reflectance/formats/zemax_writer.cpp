@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <functional>
 
 #include <fmt/format.h>
 
@@ -17,7 +16,9 @@ using reflectance::DirectionPair;
 constexpr double kZemaxTolerance = 1e-3;  // of TIS
 
 Result<void> check_axis(std::string_view name, const std::vector<double>& values, double most) {
-  const bool rises = std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
+  // Not "at least": NaN must not pass.
+  const auto does_not_rise = [](double a, double b) { return !(a < b); };
+  const bool rises = std::ranges::adjacent_find(values, does_not_rise) == values.end();
   const bool is_within = !values.empty() && values.front() >= 0.0 && values.back() <= most;
   if (rises && is_within) return {};
   return failure({.code = ErrorCode::InvalidInput,
