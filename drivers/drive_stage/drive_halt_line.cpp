@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "drivers/links/gave_way.h"
+
 namespace gonio::drivers {
 
 using stage::Axis;
@@ -99,7 +101,7 @@ Result<void> DriveHaltLine::beat() {
   Result<void> outcome;
   for (const auto& drive : drives_) {
     if (!take(&drive->beats)) {
-      outcome = failure(drive->beat_line.error(ErrorCode::Unreachable, "feed its watchdog", "interrupted"));
+      outcome = failure(drive->beat_line.error(ErrorCode::Unreachable, "feed its watchdog", kGaveWay));
       break;
     }
     Result<void> fed = feed(*drive);

@@ -5,16 +5,13 @@
 #include <array>
 #include <utility>
 
+#include "drivers/links/gave_way.h"
+
 namespace gonio::drivers {
 namespace {
 
 bool says_nothing(ErrorCode code) {
   return code == ErrorCode::TimedOut || code == ErrorCode::Unreachable;
-}
-
-// The links' word for a call that gave way to a halt, which takes one exchange a drive.
-bool gave_way(const Error& error) {
-  return error.code == ErrorCode::Unreachable && error.seen == "interrupted";
 }
 
 // What of a value fits the register, as it will be read back.
@@ -53,6 +50,7 @@ Result<void> UnitLine::talk(const std::string& what, Exchange exchange) {
       silent_since_.reset();
       break;
     }
+    // A halt takes one exchange a drive, and more than one call may have to give way to it.
     if (tries_ > 1 && gave_way(done.error()) && ++given_way <= kMostGivenWay) {
       --tries;  // no failing of the unit
       continue;

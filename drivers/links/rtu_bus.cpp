@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "drivers/links/gave_way.h"
+
 namespace gonio::drivers {
 namespace {
 
@@ -41,7 +43,7 @@ Result<void> RtuBus::take_turn(Face& face) {
     return {};
   }
   changed_.notify_all();
-  if (is_in_time) return failure(turn_error(ErrorCode::Unreachable, "interrupted"));
+  if (is_in_time) return failure(turn_error(ErrorCode::Unreachable, kGaveWay));
   return failure(turn_error(ErrorCode::TimedOut, "the line is never free"));
 }
 

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/links/gave_way.h"
+
 namespace gonio::drivers {
 namespace {
 
@@ -97,7 +99,7 @@ Result<std::size_t> RtuLine::waiting_bytes() {
 
 // Until then, until there are bytes when those are waited for, or until woken. Errors: Unreachable.
 Result<void> RtuLine::wait(Instant until, bool for_bytes, const GivesWay& gives_way) {
-  if (gives_way()) return failure(plain(ErrorCode::Unreachable, "interrupted"));
+  if (gives_way()) return failure(plain(ErrorCode::Unreachable, kGaveWay));
   const Duration left = std::max(until - clock_.now(), Duration::zero());
   const auto whole = std::chrono::floor<std::chrono::seconds>(left);
   const timespec patience{whole.count(), (left - whole).count()};
@@ -106,7 +108,7 @@ Result<void> RtuLine::wait(Instant until, bool for_bytes, const GivesWay& gives_
   if ((watched[0].revents & POLLIN) != 0) {
     eventfd_t count = 0;
     [[maybe_unused]] const int done = ::eventfd_read(wake_, &count);
-    if (gives_way()) return failure(plain(ErrorCode::Unreachable, "interrupted"));
+    if (gives_way()) return failure(plain(ErrorCode::Unreachable, kGaveWay));
   }
   if ((watched[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) return broken("the line hung up");
   return {};

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <utility>
 
+#include "drivers/links/gave_way.h"
 #include "drivers/links/modbus_context.h"
 #include "drivers/links/tcp_socket.h"
 
@@ -48,7 +49,7 @@ struct TcpModbusLink::Impl {
     Result<void> done = ensure_connected();
     if (done && is_interrupted.exchange(false)) {
       close();
-      done = failure({.code = ErrorCode::Unreachable, .device = "stage", .tried = tried(), .seen = "interrupted"});
+      done = failure({.code = ErrorCode::Unreachable, .device = "stage", .tried = tried(), .seen = kGaveWay});
     }
     if (!done) return done;
     context.select(unit);
