@@ -27,13 +27,16 @@ class CommandLine {
     leaf(app_, "status", "what the instrument does", Verb::Status);
     leaf(app_, "stop", "STOP: halt all motion now, in every state", Verb::Stop);
     add_stage();
+    add_detector();
     add_plan();
     add_scan();
     add_data();
     leaf(app_, "instrument", "the instrument as the daemon was told of it", Verb::Instrument);
     CLI::App& doctor =
         *leaf(app_, "doctor", "commissioning checks: what works, what does not, what to do", Verb::Doctor);
-    doctor.add_flag("--move", wanted.move, "also home, move each axis a little and back, and STOP once: look first");
+    doctor.add_flag(
+        "--move", wanted.move,
+        "also home, move each axis a little and back, take a dark and a lit reading, and STOP once: look first");
     CLI::App& events = *leaf(app_, "events", "what was committed, one event a line", Verb::Events);
     events.add_flag("-f,--follow", wanted.follow, "wait for more");
     events.add_option("--after", wanted.after, "begin after this event's number")->check(CLI::NonNegativeNumber);
@@ -83,6 +86,19 @@ class CommandLine {
     move.add_option("--detector-shutter-open", to.detector_shutter_open, "true or false");
     leaf(stage, "home", "find the home position of all axes", Verb::StageHome);
     leaf(stage, "reset", "clear STOP, heartbeat trip and faults; moves nothing", Verb::StageReset);
+  }
+
+  void add_detector() {
+    CLI::App& detector = group("detector", "the detector: readings by hand");
+    CLI::App& read = *leaf(detector, "read", "one reading, nothing subtracted, kept nowhere", Verb::DetectorRead);
+    api::DetectorReadRequest& wanted = wanted_.reading;
+    read.add_option("--exposure", wanted.exposure_s, "of a camera, s")->check(CLI::PositiveNumber);
+    read.add_option("--range", wanted.range_w, "of a radiometer, its full scale in W")->check(CLI::PositiveNumber);
+    CLI::Option* lit = read.add_flag_callback(
+        "--lit", [&wanted] { wanted.lit = true; }, "open both shutters for it, and put them back");
+    read.add_flag_callback(
+            "--dark", [&wanted] { wanted.lit = false; }, "close the detector's shutter for it, and put it back")
+        ->excludes(lit);
   }
 
   void add_plan() {

@@ -37,6 +37,7 @@ enum class Verb : std::uint8_t {
   Instrument,
   Doctor,
   Events,
+  DetectorRead,
 };
 
 /// What the command line asks for.
@@ -56,6 +57,7 @@ struct Invocation {
   std::string reason;
   std::string key;          ///< Idempotency-Key; empty: a new one
   api::MoveRequest target;  ///< of a move by hand
+  api::DetectorReadRequest reading;
 };
 
 /// Something to be printed instead: help or version (to standard output, exit code 0), or why the line is wrong (2).

@@ -51,6 +51,8 @@ class Runner {
         return command(RouteId::StageHome, "{}");
       case Verb::StageReset:
         return command(RouteId::StageReset, "{}");
+      case Verb::DetectorRead:
+        return show(client_.post<api::DetectorReading>(RouteId::DetectorRead, 0, api::to_json(wanted_.reading)));
       case Verb::PlanCheck:
         return check_plan();
       case Verb::ScanRun:

@@ -224,6 +224,23 @@ Table view(const api::InstrumentReport& instrument) {
   return facts.take();
 }
 
+Table view(const api::DetectorReading& reading) {
+  Facts facts;
+  facts.add("detector", reading.detector)
+      .add("unit", reading.unit)
+      .add("value", reading.value ? number_text(*reading.value) : "overload")
+      .add("noise", number_text(reading.noise, 4))
+      .add("values", std::to_string(reading.values))
+      .add("saturated", std::to_string(reading.saturated))
+      .add("full_scale", number_text(reading.full_scale))
+      .add("exposure_s", number_text(reading.exposure_s));
+  if (reading.wavelength_nm) facts.add("wavelength_nm", number_text(*reading.wavelength_nm));
+  if (reading.temperature_c) facts.add("temperature_c", number_text(*reading.temperature_c, 4));
+  facts.add("source_shutter_open", yes_no(reading.source_shutter_open))
+      .add("detector_shutter_open", yes_no(reading.detector_shutter_open));
+  return facts.take();
+}
+
 Table view(const api::CommandReport& command) {
   Facts facts;
   if (command.scan != 0) facts.add("scan", std::to_string(command.scan));

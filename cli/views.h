@@ -18,6 +18,7 @@ namespace gonio::cli {
 [[nodiscard]] Table view(const api::Event& event);
 
 [[nodiscard]] Table view(const api::InstrumentReport& instrument);
+[[nodiscard]] Table view(const api::DetectorReading& reading);
 
 /// "operator (local: lunch), lamp (detector: ...)"; empty without holds.
 [[nodiscard]] std::string holds_text(const api::ScanReport& scan);

@@ -10,6 +10,7 @@
 
 #include "cli/doctor/checks.h"
 #include "cli/doctor/trial_move.h"
+#include "cli/doctor/trial_reading.h"
 
 namespace gonio::cli {
 namespace {
@@ -54,7 +55,7 @@ Result<bool> Doctor::run() {
   if (options_.move) {
     try_motion();
   } else {
-    skip("motion", "asked for with --move: each axis goes a little and back, and is stopped once");
+    skip("motion", "asked for with --move: each axis goes a little and back, the detector reads, and one STOP");
   }
   return !has_failed_;
 }
@@ -102,10 +103,24 @@ void Doctor::try_motion() {
   for (const api::AxisLimits& axis : instrument_.axes) {
     if (axis.name == kDetectorArm) (void)try_way(axis, 0.5 * (axis.low + axis.high));
   }
+  try_readings();
   for (const api::AxisLimits& axis : instrument_.axes) {
     if (axis.name != kDetectorArm) try_axis(axis);
   }
   try_stop();
+}
+
+// Of the reference, which is bright from every side. The shutters are put back by the daemon.
+void Doctor::try_readings() {
+  const std::string check = "detector reads";
+  const auto moved = client_.post<api::CommandReport>(RouteId::StageMove, 0, to_the_reference_body(instrument_));
+  if (!moved) return note(failed(check, moved.error()));
+  const auto dark = client_.post<api::DetectorReading>(RouteId::DetectorRead, 0, trial_reading_body(false));
+  if (!dark) return note(failed(check, dark.error()));
+  note(check_dark_reading(dark->value));
+  const auto lit = client_.post<api::DetectorReading>(RouteId::DetectorRead, 0, trial_reading_body(true));
+  if (!lit) return note(failed(check, lit.error()));
+  note(check_lit_reading(lit->value, dark->value));
 }
 
 Result<double> Doctor::position(const std::string& axis) {

@@ -41,6 +41,7 @@ class Doctor {
   bool try_way(const api::AxisLimits& axis, double to);
   [[nodiscard]] Result<double> move(const api::AxisLimits& axis, double to);
   [[nodiscard]] Result<double> position(const std::string& axis);
+  void try_readings();
   void try_stop();
   void wait_until_underway(const api::AxisLimits& axis, double standing, double at_most_s);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "daemon/app/calibration_desk.h"
+#include "daemon/app/hand_reading_report.h"
 #include "daemon/app/instrument_report.h"
 #include "daemon/app/plan_desk.h"
 #include "daemon/app/plan_outlook.h"
@@ -161,6 +162,16 @@ void DaemonService::home_stage(const std::string& who, Reply<api::CommandReport>
 
 void DaemonService::reset_stage(const std::string& who, Reply<api::CommandReport> reply) {
   command(who, ClearStage{}, std::move(reply));
+}
+
+void DaemonService::read_detector(const api::DetectorReadRequest& request, const std::string& who,
+                                  Reply<api::DetectorReading> reply) {
+  const auto verb = reading_verb(request);
+  if (!verb) return reply(failure(verb.error()));
+  parts_.engine.command(who, *verb, [reply = std::move(reply)](const Result<CommandDone>& done) {
+    if (!done) return reply(failure(done.error()));
+    reply(reading_report(*done->reading));
+  });
 }
 
 void DaemonService::submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key,

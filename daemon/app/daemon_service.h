@@ -30,6 +30,8 @@ class DaemonService final : public Service {
   void move_stage(const api::MoveRequest& request, const std::string& who, Reply<api::CommandReport> reply) override;
   void home_stage(const std::string& who, Reply<api::CommandReport> reply) override;
   void reset_stage(const std::string& who, Reply<api::CommandReport> reply) override;
+  void read_detector(const api::DetectorReadRequest& request, const std::string& who,
+                     Reply<api::DetectorReading> reply) override;
   void submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key, const std::string& who,
                    Reply<api::CommandReport> reply) override;
   void change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,

@@ -137,6 +137,11 @@ void Gateway::run_command(const HttpRequest& request, const RouteMatch& match,
       const Result<api::MoveRequest> move = api::request_from_json<api::MoveRequest>(request.body);
       return move ? service_.move_stage(*move, request.who, reply) : refused(move.error());
     }
+    case RouteId::DetectorRead: {
+      const auto read = api::request_from_json<api::DetectorReadRequest>(request.body);
+      if (!read) return refused(read.error());
+      return service_.read_detector(*read, request.who, reply_to<api::DetectorReading>(exchange));
+    }
     case RouteId::StageHome:
       return service_.home_stage(request.who, reply);
     case RouteId::StageReset:

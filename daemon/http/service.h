@@ -36,6 +36,9 @@ class Service {
   virtual void move_stage(const api::MoveRequest& request, const std::string& who, Reply<api::CommandReport> reply) = 0;
   virtual void home_stage(const std::string& who, Reply<api::CommandReport> reply) = 0;
   virtual void reset_stage(const std::string& who, Reply<api::CommandReport> reply) = 0;
+  /// Errors: OutOfLimits, and those of the detector.
+  virtual void read_detector(const api::DetectorReadRequest& request, const std::string& who,
+                             Reply<api::DetectorReading> reply) = 0;
   /// The reply comes when the scan is durable. The same key (not empty) again gives the scan it made then.
   /// Errors: those of the plan, AllPointsBlocked, OutOfLimits, ReferenceExpired, ReferenceOutOfReach.
   virtual void submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key,

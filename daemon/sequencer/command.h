@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "daemon/sequencer/hand_reading.h"
 #include "daemon/store/records.h"
 #include "drivers/stage.h"
 
@@ -54,8 +55,15 @@ struct HomeStage {};
 /// Clears STOP, heartbeat trip and faults. Moves nothing, and resumes nothing.
 struct ClearStage {};
 
+/// One reading by hand, when MoveStage is allowed too. Shutters that it moves are put back as they stood.
+struct ReadDetector {
+  std::optional<Duration> exposure;  ///< of a camera; nothing: the middle of its exposures up to a second
+  std::optional<double> range_w;     ///< of a radiometer, one of its ranges; nothing: the largest
+  std::optional<bool> lit;           ///< both shutters open, or the detector's closed; nothing: as they stand
+};
+
 using Verb = std::variant<SubmitScan, PauseScan, ResumeScan, FinishScan, AbortScan, SkipItemInHand, MoveStage,
-                          HomeStage, ClearStage>;
+                          HomeStage, ClearStage, ReadDetector>;
 
 struct Command {
   CommandId id = 0;
@@ -69,6 +77,7 @@ struct Command {
 struct CommandDone {
   ScanId scan = 0;
   bool existed = false;  ///< SubmitScan: the idempotency key was known; `scan` is the one it made then
+  std::optional<HandReading> reading = std::nullopt;  ///< of ReadDetector
 };
 struct CommandReply {
   CommandId id = 0;

@@ -176,11 +176,13 @@ void Sequencer::Impl::run_verb(const Command& c, const ClearStage&, Instant) {
 }
 
 void Sequencer::Impl::take_by_hand(const Command& c) {
-  if (by_hand) return reply(c.id, failure(busy("move the stage by hand", "another such command is in work")));
+  const bool is_reading = std::holds_alternative<ReadDetector>(c.verb);
+  const std::string tried = is_reading ? "read the detector by hand" : "move the stage by hand";
+  if (by_hand) return reply(c.id, failure(busy(tried, "another such command is in work")));
   if (scan && scan->state != ScanState::Holding) {
     return reply(c.id, failure(Error{.code = ErrorCode::WrongState,
-                                     .device = "stage",
-                                     .tried = "move the stage by hand",
+                                     .device = is_reading ? "detector" : "stage",
+                                     .tried = tried,
                                      .seen = "scan " + std::to_string(scan->id) + " is " +
                                              std::string(scan_state_name(scan->state)),
                                      .limit = "allowed while no scan is under way, or while it holds"}));
@@ -214,6 +216,7 @@ void Sequencer::Impl::on_hand_look(const Result<drivers::StageState>& state) {
   if (std::holds_alternative<HomeStage>(by_hand->verb)) {
     return ask_stage(StageUse::HandDone, gonio::daemon::Home{.epoch = epoch});
   }
+  if (std::holds_alternative<ReadDetector>(by_hand->verb)) return begin_hand_reading(*state);
   const auto& move = std::get<MoveStage>(by_hand->verb);
   const auto allowed = check_move(move.target, positions_of(*state), config.instrument);
   if (!allowed) return end_by_hand(failure(allowed.error()));

@@ -77,10 +77,8 @@ bool Sequencer::Impl::has_uncommitted_item() const {
 
 void Sequencer::Impl::disown_calls() {
   // A command by hand gets its answer, whatever becomes of the scan.
-  const bool is_by_hand =
-      stage_call && (stage_call->use == StageUse::HandLook || stage_call->use == StageUse::HandDone);
-  if (stage_call && !is_by_hand) stage_call->use = StageUse::Dropped;
-  if (detector_call) detector_call->use = DetectorUse::Dropped;
+  if (stage_call && stage_call->use < StageUse::HandLook) stage_call->use = StageUse::Dropped;
+  if (detector_call && detector_call->use < DetectorUse::HandPrepare) detector_call->use = DetectorUse::Dropped;
   if (monitor_call) monitor_call->use = MonitorUse::Dropped;
 }
 
@@ -123,6 +121,10 @@ void Sequencer::Impl::on_message(const StageAnswer& answer, Instant now) {
       return on_hand_look(answer.state);
     case StageUse::HandDone:
       return on_hand_done(answer.state);
+    case StageUse::HandShutters:
+      return on_hand_shutters(answer.state);
+    case StageUse::HandShuttersBack:
+      return on_hand_shutters_back(answer.state);
     case StageUse::Dropped:
     case StageUse::Shut:
       return;
@@ -134,12 +136,14 @@ void Sequencer::Impl::on_message(const FrameAnswer& answer, Instant now) {
   const DetectorUse use = detector_call->use;
   detector_call.reset();
   if (use == DetectorUse::Frame) on_frame(answer.frame, now);
+  if (use == DetectorUse::HandFrame) on_hand_frame(answer.frame);
 }
 
 void Sequencer::Impl::on_message(const DetectorAnswer& answer, Instant now) {
   if (!detector_call || detector_call->ticket != answer.ticket) return;
   const DetectorUse use = detector_call->use;
   detector_call.reset();
+  if (use == DetectorUse::HandPrepare) return on_hand_prepared(answer.detector);
   if (use == DetectorUse::Dropped || !scan) return;
   if (!answer.detector) {
     return add_hold(hold_for(answer.detector.error().code), "detector", describe(answer.detector.error()), now);
@@ -236,6 +240,7 @@ void Sequencer::Impl::on_message(const StopHappened& stop, Instant now) {
 // ---- what is shown ----
 
 std::string_view Sequencer::Impl::doing() const {
+  if (hand_reading) return "read by hand";
   if (by_hand) return "moved by hand";
   if (!scan) return "idle";
   if (scan->state != ScanState::Running && scan->state != ScanState::Finishing) return scan_state_name(scan->state);

@@ -37,9 +37,11 @@ struct Sequencer::Impl {
     After,
     Shut,
     HandLook,
-    HandDone
+    HandDone,
+    HandShutters,
+    HandShuttersBack
   };
-  enum class DetectorUse : std::uint8_t { Dropped, Prepare, Zero, Frame };
+  enum class DetectorUse : std::uint8_t { Dropped, Prepare, Zero, Frame, HandPrepare, HandFrame };
   enum class MonitorUse : std::uint8_t { Dropped, Prepare, Reading };
   struct StageCall {
     Ticket ticket = 0;
@@ -174,6 +176,32 @@ struct Sequencer::Impl {
   void on_hand_look(const Result<drivers::StageState>& state);
   void on_hand_done(const Result<drivers::StageState>& state);
   void end_by_hand(Result<CommandDone> result);
+
+  // ---- a reading by hand (hand_reading.cpp) ----
+  /// What ReadDetector has in work.
+  struct ReadingByHand {
+    bool source_was_open = false;
+    bool detector_was_open = false;
+    bool source_open = false;
+    bool detector_open = false;
+    std::optional<PowerSettings> power;
+    Duration exposure{};
+    drivers::DetectorIdentity detector;
+    std::optional<Result<CommandDone>> result;  ///< while the shutters go back
+    [[nodiscard]] bool moves_shutters() const {
+      return source_open != source_was_open || detector_open != detector_was_open;
+    }
+  };
+  void run_verb(const Command& c, const ReadDetector& read, Instant now);
+  [[nodiscard]] Result<void> check_reading(const ReadDetector& read) const;
+  void begin_hand_reading(const drivers::StageState& state);
+  void on_hand_shutters(const Result<drivers::StageState>& state);
+  void on_hand_prepared(const Result<drivers::DetectorIdentity>& detector);
+  void on_hand_frame(const Result<FrameSummary>& frame);
+  [[nodiscard]] HandReading hand_reading_of(const FrameSummary& frame) const;
+  void end_hand_reading(Result<CommandDone> result);
+  void on_hand_shutters_back(const Result<drivers::StageState>& state);
+
   [[nodiscard]] bool is_active(const Command& c, ScanId scan);
   void abort_queued(const Command& c, ScanId scan, const std::string& reason, Instant now);
   [[nodiscard]] bool refuse_while_stopped(const Command& c);
@@ -201,6 +229,7 @@ struct Sequencer::Impl {
   std::optional<Command> by_hand;  ///< the stage command in work
   bool by_hand_is_asked = false;   ///< its first look is out
   bool by_hand_has_reset = false;  ///< it has cleared a tripped heartbeat already
+  std::optional<ReadingByHand> hand_reading;
 };
 
 }  // namespace gonio::daemon

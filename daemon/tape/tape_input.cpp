@@ -66,6 +66,13 @@ json json_of(const ClearStage& /*verb*/) {
   return {{"verb", "reset"}};
 }
 
+json json_of(const ReadDetector& verb) {
+  return {{"verb", "read"},
+          {"exposure_ns", verb.exposure ? json(verb.exposure->count()) : json()},
+          {"range_w", or_null(verb.range_w)},
+          {"lit", or_null(verb.lit)}};
+}
+
 template <class T>
 std::optional<T> optional_of(const json& value) {
   if (value.is_null()) return std::nullopt;
@@ -108,6 +115,14 @@ MoveStage move_of(const json& words) {
   return move;
 }
 
+ReadDetector reading_of(const json& words) {
+  ReadDetector read;
+  if (const auto ns = optional_of<std::int64_t>(words.at("exposure_ns"))) read.exposure = Duration(*ns);
+  read.range_w = optional_of<double>(words.at("range_w"));
+  read.lit = optional_of<bool>(words.at("lit"));
+  return read;
+}
+
 Result<Verb> verb_of(const json& words, const Instrument& instrument) {
   const std::string verb = words.at("verb");
   if (verb == "submit") return submitted(words, instrument);
@@ -121,6 +136,7 @@ Result<Verb> verb_of(const json& words, const Instrument& instrument) {
   if (verb == "move") return move_of(words);
   if (verb == "home") return HomeStage{};
   if (verb == "reset") return ClearStage{};
+  if (verb == "read") return reading_of(words);
   return failure({.code = ErrorCode::InvalidInput,
                   .device = "tape",
                   .tried = "take a command",

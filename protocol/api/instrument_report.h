@@ -48,4 +48,21 @@ struct InstrumentReport {
   std::int64_t store_free_bytes = 0;  ///< on the store's disk
 };
 
+/// A reading that was taken by hand, with nothing subtracted.
+struct DetectorReading {
+  std::string detector;         ///< vendor, model, serial number
+  std::string unit;             ///< of value, noise and full scale: "DN" or "W"
+  std::optional<double> value;  ///< mean; absent: an overload
+  double noise = 0.0;           ///< standard deviation of one pixel or sample
+  std::int64_t values = 0;      ///< pixels or samples behind the mean
+  std::int64_t saturated = 0;   ///< of them at full scale
+  double full_scale = 0.0;
+  double exposure_s = 0.0;
+  double gain_db = 0.0;
+  std::optional<double> wavelength_nm;  ///< that a radiometer was set to
+  std::optional<double> temperature_c;
+  bool source_shutter_open = false;
+  bool detector_shutter_open = false;
+};
+
 }  // namespace gonio::api

@@ -106,6 +106,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanSubmission, plan, plan_file,
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(MoveRequest, theta_i_deg, theta_r_deg, phi_r_deg, phi_i_deg,
                                                 carriage_mm, filter_wheel_slot, source_shutter_open,
                                                 detector_shutter_open)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DetectorReadRequest, exposure_s, range_w, lit)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DetectorReading, detector, unit, value, noise, values, saturated,
+                                                full_scale, exposure_s, gain_db, wavelength_nm, temperature_c,
+                                                source_shutter_open, detector_shutter_open)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PauseRequest, now, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AbortRequest, reason)
 
@@ -232,8 +236,10 @@ GONIO_REPORT(InstrumentReport);
 GONIO_REPORT(Event);
 GONIO_REPORT(StopReport);
 GONIO_REPORT(CommandReport);
+GONIO_REPORT(DetectorReading);
 GONIO_REQUEST(PlanSubmission);
 GONIO_REQUEST(MoveRequest);
+GONIO_REQUEST(DetectorReadRequest);
 GONIO_REQUEST(PauseRequest);
 GONIO_REQUEST(AbortRequest);
 GONIO_REQUEST(NoWords);

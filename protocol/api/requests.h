@@ -26,6 +26,13 @@ struct MoveRequest {
   std::optional<bool> detector_shutter_open;
 };
 
+/// One reading by hand; shutters that it moves are put back.
+struct DetectorReadRequest {
+  std::optional<double> exposure_s;  ///< of a camera
+  std::optional<double> range_w;     ///< of a radiometer
+  std::optional<bool> lit;           ///< both shutters open, or the detector's closed; absent: as they stand
+};
+
 struct PauseRequest {
   bool now = false;  ///< true drops the item in hand
   std::string reason;

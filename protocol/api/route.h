@@ -39,6 +39,7 @@ enum class RouteId : std::uint8_t {
   References,
   Instrument,
   Events,
+  DetectorRead,
 };
 
 /// One way into the daemon. `{scan}` in a path stands for a scan's number.
@@ -92,6 +93,8 @@ inline constexpr std::array kRoutes{
     Route{RouteId::References, Method::Get, "/api/v1/references", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::Instrument, Method::Get, "/api/v1/instrument", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::Events, Method::Get, "/api/v1/events", Permission::Viewer, "", kEventStream, false, 0},
+    Route{RouteId::DetectorRead, Method::Post, "/api/v1/detector/read", Permission::Operator, kJson, kJson, true,
+          kSmallBody},
 };
 
 constexpr bool routes_are_in_order() {

@@ -28,6 +28,18 @@ TEST(CommandLine, TheStageAloneIsShown) {
   EXPECT_EQ(read({"stage", "reset"}).verb, Verb::StageReset);
 }
 
+TEST(CommandLine, AReadingIsLitOrDarkOrAsTheShuttersStand) {
+  const Invocation lit = read({"detector", "read", "--exposure", "0.02", "--lit"});
+
+  EXPECT_EQ(lit.verb, Verb::DetectorRead);
+  EXPECT_EQ(lit.reading.exposure_s, 0.02);
+  EXPECT_EQ(lit.reading.lit, true);
+  EXPECT_EQ(read({"detector", "read", "--dark", "--range", "1e-3"}).reading.lit, false);
+  EXPECT_EQ(read({"detector", "read", "--range", "1e-3"}).reading.range_w, 1e-3);
+  EXPECT_FALSE(read({"detector", "read"}).reading.lit.has_value());
+  EXPECT_FALSE(read_command_line({"detector", "read", "--lit", "--dark"}, "").has_value());
+}
+
 TEST(CommandLine, FormatAndAddressMayStandAnywhere) {
   const Invocation wanted = read({"scan", "show", "3", "-o", "json", "--connect", "unix:/tmp/s"});
 

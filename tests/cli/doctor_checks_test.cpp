@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "cli/doctor/trial_move.h"
+#include "cli/doctor/trial_reading.h"
 
 namespace gonio::cli {
 namespace {
@@ -136,6 +137,34 @@ TEST(DoctorChecks, AStopMustEndTheMoveAsStopped) {
   EXPECT_EQ(check_stop("phi_r", 180.0, 40.0, 0.6, stopped).verdict, Verdict::Warning);
   EXPECT_EQ(check_stop("phi_r", 180.0, 40.0, 0.02, late).verdict, Verdict::Failed);
   EXPECT_EQ(check_stop("phi_r", 180.0, 180.0, 0.02, std::nullopt).verdict, Verdict::Failed) << "a move that counted";
+}
+
+TEST(DoctorChecks, TakeADarkForOneOnlyBelowHalfOfFullScaleAndAboveNought) {
+  const api::DetectorReading good{.unit = "DN", .value = 70.0, .noise = 3.0, .values = 448, .full_scale = 4095.0};
+  api::DetectorReading bright = good;
+  bright.value = 2500.0;
+  api::DetectorReading clipped = good;
+  clipped.value = 0.0;
+
+  EXPECT_EQ(check_dark_reading(good).verdict, Verdict::Ok);
+  EXPECT_EQ(check_dark_reading(bright).verdict, Verdict::Failed);
+  EXPECT_EQ(check_dark_reading(clipped).verdict, Verdict::Warning);
+}
+
+// 3 DN of noise in 448 pixels: each mean is good to 0.142 DN, their difference to 0.2 DN, five times that is 1.0 DN.
+TEST(DoctorChecks, SeeTheLampWhenItIsBrighterThanTheNoiseOfBothReadings) {
+  const api::DetectorReading dark{.unit = "DN", .value = 70.0, .noise = 3.0, .values = 448, .full_scale = 4095.0};
+  const auto lit = [&](std::optional<double> value, std::int64_t saturated = 0) {
+    api::DetectorReading reading = dark;
+    reading.value = value;
+    reading.saturated = saturated;
+    return check_lit_reading(reading, dark).verdict;
+  };
+
+  EXPECT_EQ(lit(71.2), Verdict::Ok);
+  EXPECT_EQ(lit(70.8), Verdict::Failed);
+  EXPECT_EQ(lit(4000.0, 3), Verdict::Warning);
+  EXPECT_EQ(lit(std::nullopt), Verdict::Warning) << "a radiometer's overload";
 }
 
 }  // namespace

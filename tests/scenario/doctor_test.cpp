@@ -34,6 +34,8 @@ TEST(DoctorScenario, FindsNothingWrongWithAGoodInstrumentAndStopsItOnce) {
     EXPECT_THAT(well.output, testing::ContainsRegex(std::string("(ok|warning) +axis ") + axis + " moves"))
         << well.output;
   }
+  EXPECT_THAT(well.output, testing::ContainsRegex("ok +detector reads in the dark")) << well.output;
+  EXPECT_THAT(well.output, testing::ContainsRegex("(ok|warning) +detector sees the lamp")) << well.output;
   EXPECT_THAT(well.output, HasSubstr("STOP halts a move"));
   EXPECT_FALSE(bench.get("stage").at("halted")) << "it cleared its own STOP";
 }

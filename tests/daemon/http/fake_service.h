@@ -38,6 +38,11 @@ class FakeService final : public daemon::Service {
     note("reset " + who);
     reply(api::CommandReport{});
   }
+  void read_detector(const api::DetectorReadRequest& request, const std::string& who,
+                     daemon::Reply<api::DetectorReading> reply) override {
+    note("read " + std::to_string(request.exposure_s.value_or(0.0)) + " " + who);
+    reply(api::DetectorReading{.detector = "Maker Model 7", .unit = "DN", .value = 71.5});
+  }
   void submit_scan(const api::PlanSubmission& submission, const std::string& key, const std::string& who,
                    daemon::Reply<api::CommandReport> reply) override {
     std::string parts;

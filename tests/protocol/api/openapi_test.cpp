@@ -110,6 +110,8 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<CommandReport>(document, "CommandReport");
   expect_schema<PlanSubmission>(document, "PlanSubmission");
   expect_schema<MoveRequest>(document, "MoveRequest");
+  expect_schema<DetectorReadRequest>(document, "DetectorReadRequest");
+  expect_schema<DetectorReading>(document, "DetectorReading");
   expect_schema<PauseRequest>(document, "PauseRequest");
   expect_schema<AbortRequest>(document, "AbortRequest");
   expect_schema<NoWords>(document, "NoWords");
