@@ -1,5 +1,7 @@
 #include "tests/scenario/bench.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -33,14 +35,14 @@ std::string plan_text(const PlanOptions& options) {
   return text.str();
 }
 
-Bench::Bench(const SceneOptions& scene) : scene_file_(folder_ / "scene.toml") {
+Bench::Bench(const SceneOptions& scene) : scene_file_(folder_ / "scene.toml"), seed_(scene.seed) {
   write_text(scene_file_, scene_text(scene));
   simulator_ = std::make_unique<Simulator>(folder_.path(), scene_file_, scene.seed, scene.stage_wire, scene.history,
                                            scene.stage);
   files_ = {simulator_->instrument_file(), simulator_->reference_folder(), folder_ / "store.sqlite"};
 }
 
-Bench::Bench(const std::string& scene_file, std::uint64_t seed) : scene_file_(scene_file) {
+Bench::Bench(const std::string& scene_file, std::uint64_t seed) : scene_file_(scene_file), seed_(seed) {
   simulator_ = std::make_unique<Simulator>(folder_.path(), scene_file_, seed);
   files_ = {simulator_->instrument_file(), simulator_->reference_folder(), folder_ / "store.sqlite"};
 }
@@ -136,8 +138,41 @@ std::string Bench::wait_for_state(long id, const std::vector<std::string>& state
   throw std::runtime_error("the scan stayed " + state + "; " + holds_of(id) + log());
 }
 
+CsvTable Bench::exported(long id) const {
+  const std::string file = folder_ / "scan.csv";
+  const Finished run = gonioctl({"data", "export", std::to_string(id), "--format", "csv", "-o", file});
+  if (run.exit_code != 0) throw std::runtime_error("no export: " + run.output + run.errors + log());
+  return parse_csv(text_of(file));
+}
+
+Bench::MeasuredAndTrue Bench::measured_and_true(long id) const {
+  CsvTable measured = exported(id);
+  const Finished run =
+      run_program({kGoniosim, "truth", scene_file_, "--seed", std::to_string(seed_), "--points", folder_ / "scan.csv"},
+                  folder_.path(), kStepDeadline);
+  if (run.exit_code != 0) throw std::runtime_error("no truth: " + run.errors);
+  return {.measured = std::move(measured), .truth = parse_csv(run.output)};
+}
+
 std::string Bench::log() const {
   return tail_of(folder_ / "goniosim.log") + tail_of(folder_ / "goniod.log");
+}
+
+int expect_agreement(const Bench::MeasuredAndTrue& tables) {
+  const auto& measured = tables.measured.rows;
+  EXPECT_EQ(tables.truth.rows.size(), measured.size());
+  int compared = 0;
+  for (std::size_t i = 0; i < std::min(measured.size(), tables.truth.rows.size()); ++i) {
+    EXPECT_EQ(tables.truth.rows[i].at("point"), measured[i].at("point"));
+    if (measured[i].at("brdf_per_sr").empty()) continue;
+    ++compared;
+    const double truth_per_sr = std::stod(tables.truth.rows[i].at("brdf_per_sr"));
+    EXPECT_GT(truth_per_sr, 0.0);
+    EXPECT_NEAR(std::stod(measured[i].at("brdf_per_sr")), truth_per_sr,
+                5.0 * std::stod(measured[i].at("expanded_u_per_sr")))
+        << "point " << measured[i].at("point");
+  }
+  return compared;
 }
 
 std::vector<std::string> accepted_items(const std::vector<ServerEvent>& events) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/scenario/csv_table.h"
 #include "tests/scenario/daemon.h"
 #include "tests/scenario/simulator.h"
 #include "tests/support/http_client.h"
@@ -94,16 +95,29 @@ class Bench {
   /// Waits until the scan's state is one of `states`; the state.
   std::string wait_for_state(long id, const std::vector<std::string>& states) const;
 
+  /// The scan as `gonioctl data export` writes it, and what the simulator knows of the same points.
+  struct MeasuredAndTrue {
+    CsvTable measured;
+    CsvTable truth;
+  };
+  [[nodiscard]] CsvTable exported(long id) const;
+  [[nodiscard]] MeasuredAndTrue measured_and_true(long id) const;
+
   /// What the programs said last, for the message of a failed test.
   [[nodiscard]] std::string log() const;
 
  private:
   TemporaryFolder folder_;
   std::string scene_file_;
+  std::uint64_t seed_;
   std::unique_ptr<Simulator> simulator_;
   DaemonFiles files_;
   std::unique_ptr<Daemon> daemon_;
 };
+
+/// Every value lies within 5 U of the truth, 10 standard uncertainties: chance never gets there, a wrong factor, dark,
+/// sign or angle does. The number of values.
+int expect_agreement(const Bench::MeasuredAndTrue& tables);
 
 /// "item-accepted" events of a list, each as (point, target).
 [[nodiscard]] std::vector<std::string> accepted_items(const std::vector<ServerEvent>& events);

@@ -17,6 +17,8 @@ const PlanOptions kPlan{.theta_i_deg = "[10, 40]", .theta_r_deg = "[0, 30]", .ph
 
 class Tape : public testing::Test {
  protected:
+  explicit Tape(const SceneOptions& scene = {}) : bench_(scene) {}
+
   // Starts a daemon that records; a store of its own, if it is the first.
   void record(const std::string& tape) {
     bench_.record_to(bench_.folder() + "/" + tape);
@@ -42,7 +44,7 @@ class Tape : public testing::Test {
   }
   std::vector<std::string> against_the_store() const { return {"--against", bench_.files().store}; }
 
-  Bench bench_{SceneOptions{}};
+  Bench bench_;
 };
 
 TEST_F(Tape, ReplaysARecordedScanToTheSameStoreAlways) {
@@ -143,6 +145,48 @@ TEST_F(Tape, ReplaysAKilledDaemonAndTheOneAfterItOnOneStore) {
   EXPECT_THAT(wrong.errors, HasSubstr("replay what came before it first"));
   EXPECT_EQ(second.exit_code, 0) << second.output << second.errors;
 }
+
+std::string meter(const std::string& role, const std::string& serial) {
+  return "[[radiometers]]\nrole = \"" + role + "\"\nserial = \"" + serial +
+         "\"\nranges_w = [1e-5, 1e-4, 1e-3, 1e-2]\naverage_s = 0.04\nzero_s = 1.0\nnoise = 1e-4\n";
+}
+
+/// A radiometer before the sample and one before the lamp, or the latter beside a camera.
+class TapeOfRadiometers : public Tape, public testing::WithParamInterface<const char*> {
+ protected:
+  TapeOfRadiometers() : Tape({.more = meters()}) {}
+  static std::string meters() {
+    const std::string both = meter("detector", "SIM-PM-01") + meter("monitor", "SIM-PM-02");
+    return std::string(GetParam()) == "Detector" ? both : meter("monitor", "SIM-PM-02");
+  }
+};
+
+TEST_P(TapeOfRadiometers, IsReplayedToTheSameStoreAndCatchesAChangedRequest) {
+  record("night.tape");
+  const Finished read = bench_.gonioctl({"detector", "read", "--dark", "-o", "json"});
+  EXPECT_EQ(read.exit_code, 0) << read.output << read.errors;
+  measure();
+  wait_for_brdf();
+  ASSERT_EQ(bench_.end_daemon(), 0) << text_of(bench_.folder() + "/goniod.log");
+  std::string changed = text_of(bench_.files().instrument);
+  const std::size_t section = changed.find("[monitor]");
+  const std::size_t wavelength = changed.find("wavelength_nm = 568", section);
+  ASSERT_NE(wavelength, std::string::npos) << changed;
+  changed.replace(wavelength, 19, "wavelength_nm = 569");
+
+  const Finished once = replay("night.tape", against_the_store());
+  const Finished other = replay("night.tape", {"--instrument", bench_.file("changed.toml", changed)}, "changed.sqlite");
+
+  EXPECT_EQ(once.exit_code, 0) << once.output << once.errors;
+  EXPECT_THAT(once.output, HasSubstr("8 items accepted"));
+  EXPECT_THAT(once.output, HasSubstr("the store is that of"));
+  EXPECT_EQ(other.exit_code, 1) << other.output << other.errors;
+  EXPECT_THAT(other.errors, HasSubstr("replay record "));
+  EXPECT_THAT(other.errors, HasSubstr("SENS:CORR:WAV 569"));
+}
+
+INSTANTIATE_TEST_SUITE_P(As, TapeOfRadiometers, testing::Values("Detector", "Monitor"),
+                         [](const auto& role) { return std::string(role.param); });
 
 }  // namespace
 }  // namespace gonio::test

@@ -6,7 +6,6 @@
 
 #include "tests/scenario/agreement.h"
 #include "tests/scenario/bench.h"
-#include "tests/scenario/csv_table.h"
 #include "tests/scenario/programs.h"
 #include "tests/scenario/store_copy.h"
 
@@ -26,20 +25,15 @@ TEST(TurningSample, AScanAgreesWithTheTruthByChiSquare) {
       plan_text({.theta_i_deg = "[0, 30, 55]", .theta_r_deg = "[0, 20, 65]", .phi_r_deg = "[45, 120, 180]"}));
   const Finished run = bench.gonioctl({"scan", "run", plan, "--watch"});
   ASSERT_EQ(run.exit_code, 0) << run.output << run.errors << bench.log();
-  const std::string file = bench.folder() + "/scan.csv";
-  ASSERT_EQ(bench.gonioctl({"data", "export", "1", "--format", "csv", "-o", file}).exit_code, 0) << bench.log();
-  const Finished truth =
-      run_program({kGoniosim, "truth", bench.scene_file(), "--seed", std::to_string(kSeed), "--points", file},
-                  bench.folder(), kStepDeadline);
-  ASSERT_EQ(truth.exit_code, 0) << truth.errors;
   EXPECT_EQ(bench.state_of(1), "done");
   const auto has_brdf = [&] { return count_of(all_events(bench, bench.daemon().port()), "brdf-computed") > 0; };
   EXPECT_TRUE(eventually(has_brdf, kStepDeadline)) << bench.log();
+  const CsvTable truth = bench.measured_and_true(1).truth;
   bench.end_daemon();
 
   const auto measured = StoreCopy(bench.files().store, bench.folder()).brdf(1);
   std::map<long, StoredValue> expected;
-  for (const auto& row : parse_csv(truth.output).rows) {
+  for (const auto& row : truth.rows) {
     if (!row.at("brdf_per_sr").empty()) {
       expected[std::stol(row.at("point"))] = {.value = std::stod(row.at("brdf_per_sr"))};
     }
