@@ -67,9 +67,9 @@ class ScanRig {
 
   ScriptedInstrument world;
   std::vector<CommandReply> replies;
-  std::vector<EventRecord> events;  ///< as published: in order
+  std::vector<EventRecord> events;                   ///< as published: in order
   std::function<void(const EventRecord&)> on_event;  ///< if set, events go there and are not kept
-  bool refuse_commits = false;      ///< DiskFull for all that follow
+  bool refuse_commits = false;                       ///< DiskFull for all that follow
 
   /// One step; false when nothing is left to do.
   bool step();
