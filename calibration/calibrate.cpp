@@ -13,6 +13,7 @@
 #include "calibration/component_table.h"
 #include "calibration/dark_history.h"
 #include "calibration/direction_slopes.h"
+#include "calibration/drift_history.h"
 #include "calibration/normalised_reading.h"
 #include "calibration/point_budget.h"
 
@@ -79,9 +80,16 @@ Error no_ratio(const PlannedPoint& point, std::string seen, std::string limit) {
           .limit = std::move(limit)};
 }
 
+/// What all readings of a scan are seen by.
+struct Histories {
+  DarkHistory darks;
+  std::optional<DriftHistory> drift;
+};
+
 Result<PairedPoint> make_pair(const PlannedPoint& point, const RawReading& sample, const RawReading& reference,
-                              const DarkHistory& darks, const DetectorModel& detector,
+                              const Histories& histories, const DetectorModel& detector,
                               const ReferenceStandard& standard) {
+  const DarkHistory& darks = histories.darks;
   auto q_sample = normalise(sample, darks, detector);
   if (!q_sample) return failure(std::move(q_sample).error());
   auto q_reference = normalise(reference, darks, detector);
@@ -100,8 +108,13 @@ Result<PairedPoint> make_pair(const PlannedPoint& point, const RawReading& sampl
                    .wavelength = point.wavelength,
                    .rho = standard.reflectance(point.wavelength).value()};
   pair.cosine_ratio = std::cos(pair.reference.geometry.theta_i.si()) / std::cos(pair.sample.geometry.theta_i.si());
+  if (histories.drift) {
+    pair.sample_drift = histories.drift->at(pair.sample.at);
+    pair.reference_drift = histories.drift->at(pair.reference.at);
+  }
+  if (pair.sample_drift) pair.drift_ratio = pair.reference_drift->level / pair.sample_drift->level;
   const double f_ref = pair.rho.value * standard.shape(pair.reference.geometry) / std::numbers::pi;
-  pair.dvalue_dq = f_ref * pair.cosine_ratio / pair.reference.q;
+  pair.dvalue_dq = f_ref * pair.cosine_ratio * pair.drift_ratio / pair.reference.q;
   pair.value = pair.dvalue_dq * pair.sample.q;
   return pair;
 }
@@ -112,11 +125,13 @@ std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const Dire
   const auto extrapolated = [](const NormalisedReading& reading) {
     return std::ranges::any_of(reading.darks, [](const DarkShare& d) { return d.level.is_extrapolated(); });
   };
+  const auto drifted = [](const std::optional<DriftLevel>& drift) { return drift && drift->is_large; };
   constexpr double kLinearUpTo = 0.05;
   set(PointFlag::NearZero, std::abs(pair.value) <= budget.expanded.si());
   set(PointFlag::DarkExtrapolated, extrapolated(pair.sample) || extrapolated(pair.reference));
   set(PointFlag::FewNeighbours, !std::ranges::all_of(slopes.has_neighbours, std::identity{}));
   set(PointFlag::BorrowedReference, borrowed);
+  set(PointFlag::Drifted, drifted(pair.sample_drift) || drifted(pair.reference_drift));
   set(PointFlag::UncertainDivisor,
       std::hypot(pair.reference.u_noise, pair.reference.u_monitor) > kLinearUpTo * pair.reference.q);
   return flags;
@@ -162,7 +177,7 @@ struct Draft {
   std::vector<RefusedPoint> refused;
 };
 
-void add_point(Draft& draft, const PlannedPoint& point, const Pairing& pairing, const DarkHistory& darks,
+void add_point(Draft& draft, const PlannedPoint& point, const Pairing& pairing, const Histories& histories,
                const InstrumentModel& instrument, const ReferenceStandard& standard) {
   const Readings own = pairing.of(point);
   if (own.sample == nullptr) return;
@@ -172,7 +187,7 @@ void add_point(Draft& draft, const PlannedPoint& point, const Pairing& pairing, 
         {point.index, no_ratio(point, "no reference reading", "one at the same geometry and wavelength")});
     return;
   }
-  auto pair = make_pair(point, *own.sample, *reference, darks, instrument.detector, standard);
+  auto pair = make_pair(point, *own.sample, *reference, histories, instrument.detector, standard);
   if (!pair) {
     draft.refused.push_back({point.index, std::move(pair).error()});
     return;
@@ -207,17 +222,21 @@ std::string_view flag_name(PointFlag flag) {
       return "borrowed-reference";
     case PointFlag::UncertainDivisor:
       return "uncertain-divisor";
+    case PointFlag::Drifted:
+      return "drifted";
   }
   return "";
 }
 
 Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel& instrument,
-                                 const ReferenceStandard& standard, UtcTime measured_on) {
+                                 const ReferenceStandard& standard, UtcTime measured_on,
+                                 const CalibrationOptions& options) {
   GONIO_TRY(standard.check_date(measured_on));
-  const DarkHistory darks(scan, instrument.detector);
+  Histories histories{.darks = DarkHistory(scan, instrument.detector), .drift = std::nullopt};
+  if (options.correct_drift) histories.drift.emplace(scan, histories.darks, instrument);
   const Pairing pairing(scan);
   Draft draft;
-  for (const PlannedPoint& point : scan.points) add_point(draft, point, pairing, darks, instrument, standard);
+  for (const PlannedPoint& point : scan.points) add_point(draft, point, pairing, histories, instrument, standard);
   const std::vector<DirectionSlopes> slopes = direction_slopes(draft.places, scan.isotropic);
   ComponentTable table;
   for (std::size_t n = 0; n < draft.points.size(); ++n) {
@@ -231,12 +250,14 @@ Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel
   return calibrated;
 }
 
-std::string describe_inputs(const InstrumentModel& instrument, const ReferenceStandard& standard) {
+std::string describe_inputs(const InstrumentModel& instrument, const ReferenceStandard& standard,
+                            const CalibrationOptions& options) {
   const DetectorModel& d = instrument.detector;
   const AngleModel& a = instrument.angles;
   const LampModel& l = instrument.lamp;
   const Certificate& c = standard.certificate();
   std::string text = fmt::format("{}\n", kCalibrationCode);
+  if (!options.correct_drift) text += "drift uncorrected\n";
   const auto line = [&](std::string_view name, std::initializer_list<double> values) {
     text += name;
     for (const double value : values) text += fmt::format(" {:.17g}", value);

@@ -15,6 +15,11 @@ namespace gonio::calibration {
 /// The rules of this room, as one number: grows whenever the same inputs would give other values.
 inline constexpr std::string_view kCalibrationCode = "gonio-calibration-1";
 
+/// What a calibration may leave undone.
+struct CalibrationOptions {
+  bool correct_drift = true;  ///< false: visits of the standard count for nothing
+};
+
 /// Readings to BRDF by the ratio to the reference at the same geometry and wavelength:
 ///   f_s(G) = f_ref(G_ref) q_s mu_i,ref / (q_ref mu_i,s),
 /// where source power, solid angles and overlap cancel and the cosines (of the radiance mode: field of view inside the
@@ -32,13 +37,17 @@ inline constexpr std::string_view kCalibrationCode = "gonio-calibration-1";
 ///   f_s d ln f_ref/d angle (direction_slopes.h), and what those slopes leave unresolved; exposure offset; linearity
 ///   L(N_s) - L(N_ref), L = eps N / full scale; lamp after the monitor, one component for each correlation time, with
 ///   u^2 = u_after^2 (1 - exp(-dt^2 / (2 correlation^2))); each dark visit and rung; drift between darks, one for each
-///   interval.
+///   interval; each reference visit, and what the line between two of them misses.
+/// Drift: with two or more visits of the standard (drift_history.h) f_s is multiplied by g(t_ref) / g(t_s), g the
+/// response to the standard at the visits' geometry, linear between them.
 /// Points whose reading cannot be used are listed with the reason; they are never filled in.
 /// Errors: ReferenceExpired at `measured_on`. Pure; single-threaded, so the same inputs give the same bits.
 [[nodiscard]] Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel& instrument,
-                                               const ReferenceStandard& standard, UtcTime measured_on);
+                                               const ReferenceStandard& standard, UtcTime measured_on,
+                                               const CalibrationOptions& options = {});
 
 /// All that `calibrate` rests on beside the readings, as one text with all digits: its hash names a calibration.
-[[nodiscard]] std::string describe_inputs(const InstrumentModel& instrument, const ReferenceStandard& standard);
+[[nodiscard]] std::string describe_inputs(const InstrumentModel& instrument, const ReferenceStandard& standard,
+                                          const CalibrationOptions& options = {});
 
 }  // namespace gonio::calibration

@@ -18,7 +18,8 @@ enum class PointFlag : std::uint32_t {
   FewNeighbours = 1U << 2U,      ///< the slope along an angle was guessed: no other point on that line
   BorrowedReference = 1U << 3U,  ///< the reference was read for another point of the same geometry
   UncertainDivisor =
-      1U << 4U,  ///< relative u of the reference's reading above 5 %: U by linear propagation is too small
+      1U << 4U,        ///< relative u of the reference's reading above 5 %: U by linear propagation is too small
+  Drifted = 1U << 5U,  ///< read between two visits of the standard that differ by more than the plan's limit
 };
 [[nodiscard]] std::string_view flag_name(PointFlag flag);
 [[nodiscard]] constexpr bool has(std::uint32_t flags, PointFlag flag) {

@@ -34,6 +34,8 @@ enum class ComponentSource : std::uint8_t {
   DarkDrift,
   SharedReference,
   Range,
+  VisitNoise,
+  Drift,
 };
 
 /// Numbers the components of a scan as they first appear.

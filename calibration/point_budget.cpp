@@ -30,6 +30,7 @@ class Terms {
     add_zeros();
     add_detector();
     add_lamp();
+    add_drift();
     add_ranges();
     add_darks(p_.sample, p_.dvalue_dq);
     add_darks(p_.reference, -p_.value / p_.reference.q);
@@ -176,6 +177,45 @@ class Terms {
     add_shared({ComponentSource::Lamp, interval, 0, 0},
                fmt::format("lamp after the monitor, {:.0f} s", static_cast<double>(interval) * lamp.correlation_s),
                lamp.u_after_monitor, "1", p_.value * u);
+  }
+
+  // The response at two moments, as its visits found it: what both moments have of one visit cancels.
+  void add_drift() {
+    if (!p_.sample_drift || !p_.reference_drift) return;
+    const DriftLevel& sample = *p_.sample_drift;
+    const DriftLevel& reference = *p_.reference_drift;
+    std::map<std::int64_t, std::pair<const ReferenceVisit*, double>> visits;
+    const auto add_visit = [&visits](const ReferenceVisit* visit, double weight) {
+      if (visit == nullptr) return;
+      auto& entry = visits.try_emplace(visit->visit_id, visit, 0.0).first->second;
+      entry.second += weight;
+    };
+    add_visit(reference.before, (1.0 - reference.weight_after) / reference.level);
+    add_visit(reference.after, reference.weight_after / reference.level);
+    add_visit(sample.before, -(1.0 - sample.weight_after) / sample.level);
+    add_visit(sample.after, -sample.weight_after / sample.level);
+    for (const auto& [id, visit] : visits) {
+      add_shared({ComponentSource::VisitNoise, id, 0, 0}, fmt::format("reference visit {}", id), visit.first->u, "1",
+                 p_.value * visit.second * visit.first->u);
+    }
+    const bool is_same = sample.before == reference.before && sample.after == reference.after;
+    if (!is_same) {
+      add_change(sample, sample.weight_after, sample.beyond);
+      add_change(reference, reference.weight_after, reference.beyond);
+    } else {
+      add_change(sample, std::abs(sample.weight_after - reference.weight_after),
+                 std::abs(sample.beyond - reference.beyond));
+    }
+  }
+
+  // Between two visits the straight line is wrong by as much as a step at an unknown moment makes it: change
+  // sqrt(p (1 - p)) over the part p of the interval. Beyond the visits the change may have gone on.
+  void add_change(const DriftLevel& at, double part, double beyond) {
+    const double u = at.change / at.level * (at.is_between() ? std::sqrt(part * (1.0 - part)) : beyond);
+    const std::int64_t before = at.before == nullptr ? -1 : at.before->visit_id;
+    const std::int64_t after = at.after == nullptr ? -1 : at.after->visit_id;
+    add_shared({ComponentSource::Drift, before, after, 0}, fmt::format("drift between visits {} and {}", before, after),
+               at.change, "1", p_.value * u);
   }
 
   // One range's gain cancels between two readings in it; each other one stays.

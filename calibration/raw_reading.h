@@ -75,7 +75,8 @@ struct PlannedPoint {
 struct ScanReadings {
   bool isotropic = true;
   std::vector<PlannedPoint> points;
-  std::vector<RawReading> readings;  ///< accepted attempts and all visits, in time order
+  std::optional<double> drift_limit;  ///< of the plan, relative: readings between two visits beyond it are flagged
+  std::vector<RawReading> readings;   ///< accepted attempts and all visits, in time order
 };
 
 }  // namespace gonio::calibration

@@ -68,6 +68,15 @@ std::string order_text(const api::PlanOrder& order) {
 
 }  // namespace
 
+std::string visits_text(const api::ScanReport& scan) {
+  const std::int64_t darks = scan.visits - scan.reference_visits - scan.check_visits;
+  return fmt::format("{} dark, {} reference, {} check", darks, scan.reference_visits, scan.check_visits);
+}
+
+std::string drift_text(const api::ScanReport& scan) {
+  return scan.reference_visits + scan.check_visits > 1 ? percent_text(scan.largest_drift) : "";
+}
+
 std::string holds_text(const api::ScanReport& scan) {
   std::string text;
   for (const api::HoldReport& hold : scan.holds) {
@@ -165,7 +174,9 @@ Table view(const api::ScanReport& scan) {
       .add("accepted", std::to_string(scan.accepted))
       .add("skipped", std::to_string(scan.skipped))
       .add("attempts", std::to_string(scan.attempts))
-      .add("visits", std::to_string(scan.visits))
+      .add("visits", visits_text(scan))
+      .add("largest_drift", drift_text(scan))
+      .add("measured_again", scan.measured_again > 0 ? std::to_string(scan.measured_again) + " points" : "")
       .add("a_point", split_text(scan.seconds_a_point))
       .add("idle_of_it_s", idle_text(scan.seconds_a_point.idle_by))
       .add("to_go", scan.remaining_s ? duration_text(*scan.remaining_s) : "")

@@ -17,8 +17,8 @@ namespace {
 using calibration::PointFlag;
 
 constexpr int kPointsAtOnce = 5000;
-constexpr std::array kFlags{PointFlag::NearZero, PointFlag::DarkExtrapolated, PointFlag::FewNeighbours,
-                            PointFlag::BorrowedReference, PointFlag::UncertainDivisor};
+constexpr std::array kFlags{PointFlag::NearZero,          PointFlag::DarkExtrapolated, PointFlag::FewNeighbours,
+                            PointFlag::BorrowedReference, PointFlag::UncertainDivisor, PointFlag::Drifted};
 
 std::string flag_words(std::uint32_t flags) {
   std::string words;
@@ -42,12 +42,17 @@ std::string status_without_value(const PointInfo& info) {
   return both ? "refused" : "unmeasured";
 }
 
-// Each scan visits the dark anew; every other shared part is the instrument's or the standard's.
+// Each scan visits the dark and the standard anew; every other shared part is the instrument's or the standard's.
+bool is_own(std::string_view component) {
+  return component.starts_with("dark ") || component.starts_with("reference visit ") ||
+         component.starts_with("drift between visits ");
+}
+
 double own_u(const BrdfRow& row, const std::vector<std::string>& component_names) {
   double variance = row.u_random_per_sr * row.u_random_per_sr;
   for (std::size_t i = 0; i + 1 < row.sensitivities_per_sr.size(); i += 2) {
     const auto component = static_cast<std::size_t>(row.sensitivities_per_sr[i]);
-    if (component < component_names.size() && component_names[component].starts_with("dark ")) {
+    if (component < component_names.size() && is_own(component_names[component])) {
       variance += row.sensitivities_per_sr[i + 1] * row.sensitivities_per_sr[i + 1];
     }
   }

@@ -76,6 +76,10 @@ api::ScanReport scan_report(const ScanInfo& info, Instant now) {
   report.skipped = info.counts.skipped;
   report.attempts = info.counts.attempts;
   report.visits = info.counts.visits;
+  report.reference_visits = info.counts.reference_visits;
+  report.check_visits = info.counts.check_visits;
+  report.measured_again = info.counts.reopened;
+  report.largest_drift = info.largest_drift;
   report.spent = time_split(info.spent);
   report.seconds_a_point = seconds_a_point(report.spent, report.accepted);
   report.holds = hold_reports(info.holds, now);

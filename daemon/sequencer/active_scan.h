@@ -15,6 +15,7 @@
 #include "daemon/sequencer/scan_items.h"
 #include "daemon/sequencer/time_estimate.h"
 #include "daemon/sequencer/time_ledger.h"
+#include "daemon/sequencer/visit_level.h"
 #include "daemon/sequencer/way_ahead.h"
 #include "daemon/store/records.h"
 
@@ -22,13 +23,14 @@ namespace gonio::daemon {
 
 /// One thing that the instrument is doing for a scan: a move, and the exposures after it.
 struct Job {
-  enum class Kind : std::uint8_t { Item, Dark, Park };
+  enum class Kind : std::uint8_t { Item, Dark, Park, Reference, Check };
   enum class Phase : std::uint8_t { ToMove, Homing, Moving, InPlace, Exposing };
 
   Kind kind = Kind::Item;
-  ItemKey item;  ///< of an Item
+  ItemKey item;  ///< of an Item; of a Reference or Check visit, what is in view
   std::optional<Measurement> measurement;
-  drivers::MotionTarget target{};  ///< what must hold during the exposures
+  std::optional<ExposureChooser> chooser;  ///< of a Reference or Check visit: its own
+  drivers::MotionTarget target{};          ///< what must hold during the exposures
   Phase phase = Phase::ToMove;
   Instant started{};
   Instant asked{};                ///< when the call now open was made
@@ -43,6 +45,16 @@ struct Job {
   std::optional<drivers::StageState> before;  ///< where no gate latches: the look before the exposure in hand
   std::optional<PowerRecord> monitor;         ///< a radiometer's in the lamp's light, over the exposure in hand
   std::optional<Error> gate_error;            ///< the gate was not seen in time; the camera's answer may say why
+  [[nodiscard]] bool is_visit() const { return kind == Kind::Dark || kind == Kind::Reference || kind == Kind::Check; }
+  [[nodiscard]] bool is_lit() const { return kind != Kind::Dark && kind != Kind::Park; }
+};
+
+/// Visits of the standard, or of the sample, in a scan that wants them.
+struct VisitTrack {
+  std::optional<VisitLevel> level;  ///< of the last one, of any run
+  std::vector<ItemKey> since;       ///< accepted after it, in force: the next one judges them
+  std::optional<Instant> last;      ///< of this run
+  std::optional<std::size_t> rung;  ///< that the first one of this run chose: all of them expose alike
 };
 
 /// A scan that is not over, with all that the sequencer knows of it. The durable part is the store's; the rest is made
@@ -61,7 +73,14 @@ struct ActiveScan {
         spent(stored.spent),
         items(points.size(), std::move(stored.order), policy.block, stored.accepted, stored.skipped),
         chooser(instrument, policy),
-        dark_owed(stored.dark_owed) {
+        dark_owed(stored.dark_owed),
+        reference_visits{.level = stored.last_reference.level, .since = std::move(stored.last_reference.since)},
+        check_visits{.level = stored.last_check.level, .since = std::move(stored.last_check.since)},
+        reopened(stored.reopened.begin(), stored.reopened.end()),
+        largest_drift(stored.largest_drift) {
+    visits_at = reference_visits.level ? reference_visits.level->point
+                : check_visits.level   ? check_visits.level->point
+                                       : visit_point(points);
     for (const auto& [item, count] : stored.attempts) failures[item] = count;
     for (const Duration exposure : stored.exposures_used) note_rung_of(exposure);
     if (!points.empty()) {
@@ -114,9 +133,14 @@ struct ActiveScan {
   std::optional<std::size_t> lowest_rung;  ///< used by accepted readings
   std::optional<std::size_t> highest_rung;
   int most_frames = 1;
-  int dark_failures = 0;
-  bool is_position_in_doubt = false;  ///< an axis was not where it was left or sent: home before the next move
-  std::int64_t uncommitted = 0;       ///< items accepted here whose commit has not returned
+  int visit_failures = 0;
+  std::int32_t visits_at = 0;  ///< the point of the lit visits
+  VisitTrack reference_visits;
+  VisitTrack check_visits;
+  std::map<std::int32_t, int> reopened;  ///< points, and how often a drift made them be measured again
+  double largest_drift;                  ///< between two visits
+  bool is_position_in_doubt = false;     ///< an axis was not where it was left or sent: home before the next move
+  std::int64_t uncommitted = 0;          ///< items accepted here whose commit has not returned
   std::optional<Job> job;
   std::optional<Job> ahead;  ///< the next item, while the frame of the one in hand is still read: only its move
   TimeLedger ledger;         ///< while it is active
@@ -125,6 +149,8 @@ struct ActiveScan {
   WayAhead way;
   WayAhead::Turns turns;                           ///< to come, as of the last one
   std::optional<calibration::Target> last_target;  ///< of this run
+  DurationStatistics item_time;                    ///< all of it
+  DurationStatistics visit_time;                   ///< of the standard and the sample
 
   /// While preparing: what is verified so far.
   enum class Preparation : std::uint8_t { Detector, Monitor, Look, LookAgain, Reset, Home, Verified, Shut, Zero };

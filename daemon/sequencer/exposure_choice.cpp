@@ -50,12 +50,20 @@ std::optional<double> ExposureChooser::range_w(std::size_t rung) const {
   return ranges_w_.empty() ? std::nullopt : std::optional(ranges_w_[rung]);
 }
 
+double ExposureChooser::frame_variance(double net_dn, std::uint32_t pixels) const {
+  return (std::max(net_dn, 0.0) / electrons_per_dn_ + 2.0 * read_noise_dn_ * read_noise_dn_) / pixels;
+}
+
+ExposureChooser ExposureChooser::for_visit(double target_snr, std::optional<std::size_t> rung) const {
+  ExposureChooser chooser = *this;
+  chooser.target_snr_ = std::max(target_snr_, target_snr);
+  if (rung && stated_.empty()) chooser.stated_ = {*rung};
+  return chooser;
+}
+
 double ExposureChooser::frames_wished(std::size_t rung, const Signal& signal) const {
   const double net = signal.rate_dn_per_s * weights_[rung];
-  // One frame: photon noise, and read noise twice because a dark of the same rung is subtracted (EMVA 1288, mean of n
-  // pixels).
-  const double variance =
-      (std::max(net, 0.0) / electrons_per_dn_ + 2.0 * read_noise_dn_ * read_noise_dn_) / signal.pixels;
+  const double variance = frame_variance(net, signal.pixels);
   if (net <= std::sqrt(variance)) return std::numeric_limits<double>::infinity();  // nothing but noise
   return std::ceil(target_snr_ * target_snr_ * variance / (net * net));
 }

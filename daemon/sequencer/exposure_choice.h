@@ -44,6 +44,12 @@ class ExposureChooser {
     double rate_dn_per_s = 0.0;
     std::uint32_t pixels = 1;
   };
+  /// Of a frame's net mean over `pixels`, in DN^2 (EMVA 1288): shot noise, and read noise twice because a dark is
+  /// subtracted.
+  [[nodiscard]] double frame_variance(double net_dn, std::uint32_t pixels) const;
+  /// What it knows, for a reading that is to reach `target_snr`; always on `rung`, where one is given and the plan
+  /// states none.
+  [[nodiscard]] ExposureChooser for_visit(double target_snr, std::optional<std::size_t> rung) const;
   /// `ceiling`: the highest rung that may be used (a higher one saturated).
   [[nodiscard]] ExposurePlan choose(const Signal& signal, std::size_t ceiling) const;
   /// How many frames on `rung` reach the plan's signal-to-noise: bounded by the plan's time and the instrument.

@@ -30,6 +30,8 @@ class Measurement {
   [[nodiscard]] bool expects_no_more(const ExposureChooser& chooser) const;
   /// All frames so far, probes and saturated ones among them (not `used`).
   [[nodiscard]] const std::vector<ReadingRecord>& readings() const { return readings_; }
+  /// Of the reading at this place.
+  [[nodiscard]] std::size_t rung_of(std::size_t reading) const { return rung_of_reading_[reading]; }
   /// The rungs of those that count, each once, ascending.
   [[nodiscard]] std::vector<std::size_t> used_rungs() const;
   /// How many of them count, on the last rung.

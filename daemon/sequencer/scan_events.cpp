@@ -1,6 +1,7 @@
 #include "daemon/sequencer/scan_events.h"
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace gonio::daemon {
 
@@ -106,10 +107,28 @@ NewEvent event_skipped(const SkipItem& skip) {
                {{"point", skip.item.point}, {"target", target_name(skip.item.target)}, {"reason", skip.reason}});
 }
 
-NewEvent event_dark_visit(const NewVisit& visit) {
-  return event(
-      "dark-visit", visit.scan, "goniod",
-      {{"frames", visit.readings.size()}, {"gate_counts", gate_counts(visit.readings)}, {"time", parts_s(visit.time)}});
+NewEvent event_visit(const NewVisit& visit) {
+  json body{
+      {"frames", visit.readings.size()}, {"gate_counts", gate_counts(visit.readings)}, {"time", parts_s(visit.time)}};
+  if (visit.level) {
+    body["point"] = visit.level->point;
+    body["level"] = visit.level->level;
+    body["u_relative"] = visit.level->u_relative;
+    if (visit.level->drift) body["drift"] = *visit.level->drift;
+  }
+  return event(std::string(visit_kind_name(visit.kind)) + "-visit", visit.scan, "goniod", body);
+}
+
+NewEvent event_reopened(const NewVisit& visit, double drift_limit, std::int64_t kept) {
+  std::set<std::int32_t> points;
+  for (const ItemKey& item : visit.reopened) points.insert(item.point);
+  return event("items-reopened", visit.scan, "goniod",
+               {{"visit", visit_kind_name(visit.kind)},
+                {"drift", visit.level->drift.value_or(0.0)},
+                {"limit", drift_limit},
+                {"points", points},
+                {"items", visit.reopened.size()},
+                {"kept", kept}});
 }
 
 NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch) {

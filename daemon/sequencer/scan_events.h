@@ -21,7 +21,9 @@ namespace gonio::daemon {
 /// "item-accepted", "item-failed", "item-dropped" by the attempt's outcome.
 [[nodiscard]] NewEvent event_attempt(const NewAttempt& attempt, const Measurement& measurement);
 [[nodiscard]] NewEvent event_skipped(const SkipItem& skip);
-[[nodiscard]] NewEvent event_dark_visit(const NewVisit& visit);
+[[nodiscard]] NewEvent event_visit(const NewVisit& visit);
+/// `kept`: points between the visits that were measured again often enough.
+[[nodiscard]] NewEvent event_reopened(const NewVisit& visit, double drift_limit, std::int64_t kept);
 [[nodiscard]] NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch);
 
 }  // namespace gonio::daemon

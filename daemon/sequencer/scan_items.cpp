@@ -1,5 +1,7 @@
 #include "daemon/sequencer/scan_items.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace gonio::daemon {
@@ -97,6 +99,47 @@ std::vector<ItemKey> ScanItems::give_up(const ItemKey& item) {
     gone.push_back(partner);
   }
   return gone;
+}
+
+std::vector<ItemKey> ScanItems::reopen(std::int32_t point) {
+  const std::array<ItemKey, 2> partners{ItemKey{point, Target::Sample}, ItemKey{point, Target::Reference}};
+  if (std::ranges::any_of(partners, [this](const ItemKey& item) { return fate(item) == Fate::Skipped; })) return {};
+  std::vector<ItemKey> opened;
+  for (const ItemKey& item : partners) {
+    if (fate(item) != Fate::Accepted) continue;
+    fate(item) = Fate::Open;
+    ++(item.target == Target::Sample ? open_samples_ : open_references_);
+    --accepted_;
+    opened.push_back(item);
+  }
+  std::erase(block_, point);
+  cursor_ = 0;
+  pass_decided();
+  if (block_.empty()) on_reference_ = false;
+  return opened;
+}
+
+std::vector<ItemKey> ScanItems::ahead(std::size_t at_most) const {
+  std::vector<ItemKey> items;
+  const auto is_open = [](const std::vector<Fate>& fates, std::int32_t point) {
+    return fates[static_cast<std::size_t>(point)] == Fate::Open;
+  };
+  if (on_reference_) {
+    for (auto point = block_.rbegin(); point != block_.rend() && items.size() < at_most; ++point) {
+      if (is_open(reference_, *point)) items.push_back({*point, Target::Reference});
+    }
+    return items;
+  }
+  for (std::size_t k = cursor_; k < order_.size() && items.size() < at_most; ++k) {
+    if (is_open(sample_, order_[k])) items.push_back({order_[k], Target::Sample});
+  }
+  return items;
+}
+
+Instant ScanItems::turns_at(Instant now, Duration each) const {
+  if (on_reference_) return now + static_cast<std::int64_t>(block_.size()) * each;
+  const Instant used_up = now + open_samples_ * each;
+  return block_.empty() ? used_up : std::min(used_up, block_began_ + pass_);
 }
 
 std::int64_t ScanItems::open(Target target) const {

@@ -36,6 +36,13 @@ class ScanItems {
   [[nodiscard]] std::int64_t total() const { return 2 * static_cast<std::int64_t>(order_.size()); }
   [[nodiscard]] std::int64_t accepted() const { return accepted_; }
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
+  /// A point is to be measured again, sample and reference, so that they are partners within one block: its accepted
+  /// items, now open. None where one of the two is skipped.
+  std::vector<ItemKey> reopen(std::int32_t point);
+  /// The open items of this pass as they would follow each other, `next` first; `at_most` of them.
+  [[nodiscard]] std::vector<ItemKey> ahead(std::size_t at_most) const;
+  /// When the carriage will change sides, if each item takes `each`.
+  [[nodiscard]] Instant turns_at(Instant now, Duration each) const;
   /// Not decided yet.
   [[nodiscard]] std::int64_t open(calibration::Target target) const;
 

@@ -89,7 +89,7 @@ Result<void> Sequencer::Impl::aim(Job& job) const {
 
 void Sequencer::Impl::begin_measurement(Job& job) const {
   const auto filter = static_cast<int>(std::lround(job.target[stage::index_of(Axis::FilterWheel)].value_or(0.0)));
-  job.measurement = Measurement::of_item(scan->chooser, job.item.target, filter);
+  job.measurement = Measurement::of_item(job.chooser ? *job.chooser : scan->chooser, job.item.target, filter);
 }
 
 void Sequencer::Impl::start_park(Instant now) {
@@ -126,7 +126,7 @@ void Sequencer::Impl::ask_to_move(Job& job, Instant now) {
   ask_stage(StageUse::Move, MoveTo{.epoch = epoch,
                                    .target = job.target,
                                    .source_shutter_open = job.kind != Job::Kind::Park,
-                                   .detector_shutter_open = job.kind == Job::Kind::Item});
+                                   .detector_shutter_open = job.is_lit()});
 }
 
 void Sequencer::Impl::on_homed_again(const Result<drivers::StageState>& state, Instant now) {
@@ -256,7 +256,7 @@ void Sequencer::Impl::join_exposure(Instant now) {
   if (!scan->ahead) scan->ledger.enter(config.instrument.has_gate() ? job.time.read : job.time.idle.wire, now);
   scan->chooser.learn_frame_time(std::max(Duration::zero(), now - job.asked - exposure));
   if (job.monitor) set_monitor(job.gate->gate, job.monitor->reading);
-  const auto verdict = job.measurement->add(reading_from(job, exposure), scan->chooser);
+  const auto verdict = job.measurement->add(reading_from(job, exposure), job.chooser ? *job.chooser : scan->chooser);
   if (lamp_is_out(job.gate->gate, now)) return drop_job(now);
   if (verdict == Measurement::Verdict::Saturated) {
     return job_failed(Error{.code = ErrorCode::Saturated,
@@ -315,7 +315,9 @@ NewAttempt Sequencer::Impl::attempt_of(Job& job, AttemptOutcome outcome, Instant
 void Sequencer::Impl::accept_job(Instant now) {
   Job job = *std::exchange(scan->job, std::nullopt);
   scan->spent += job.time;
-  job.kind == Job::Kind::Item ? accept_item(job, now) : accept_dark(job, now);
+  if (job.kind == Job::Kind::Item) accept_item(job, now);
+  if (job.kind == Job::Kind::Dark) accept_dark(job, now);
+  if (job.is_visit() && job.is_lit()) accept_visit(job, now);
   if (scan->ahead) take_up_ahead(now);
 }
 
@@ -326,8 +328,11 @@ void Sequencer::Impl::accept_item(Job& job, Instant now) {
   scan->items.accept(job.item, now);
   scan->failures.erase(job.item);
   scan->dark_owed = true;
+  scan->reference_visits.since.push_back(job.item);
+  scan->check_visits.since.push_back(job.item);
   ++scan->uncommitted;
   const bool is_turn = std::exchange(scan->last_target, job.item.target) != job.item.target;
+  scan->item_time.add(job.time.total());
   scan->end_estimate.add_item(job.item.target, job.time, job.model, is_turn);
   constexpr std::int64_t kEarly = 16;  // the way was hardly known at the first turn
   if (is_turn || scan->items.accepted() == kEarly) look_at_turns();
@@ -363,7 +368,7 @@ void Sequencer::Impl::job_failed(const Error& error, Instant now) {
   if (was_elsewhere && error.device == "stage") scan->is_position_in_doubt = true;
   const bool is_item = scan->job->kind == Job::Kind::Item;
   if (is_item && reaction_to(error) != Reaction::Hold) return item_failed(error, now);
-  if (scan->job->kind == Job::Kind::Dark && reaction_to(error) != Reaction::Hold) return dark_failed(error, now);
+  if (scan->job->is_visit() && reaction_to(error) != Reaction::Hold) return visit_failed(error, now);
   drop_job(now);
   scan->job.reset();
   add_hold(hold_for(error.code), error.device.empty() ? kDaemon : error.device, describe(error), now);

@@ -116,7 +116,7 @@ void Sequencer::Impl::entered(ScanState state, Instant now) {
     scan->preparation = ActiveScan::Preparation::Detector;
     scan->reset_tried = false;
     scan->prepared_since = now;
-    scan->dark_failures = 0;
+    scan->visit_failures = 0;
   }
   if (is_over(state)) {
     if (scan->finish_command) reply(scan->finish_command->id, failure(wrong_state(scan->id, state, ScanEvent::Finish)));

@@ -294,6 +294,11 @@ WorkLeft Sequencer::Impl::work_left() const {
                 .turns_s = scan->turns.time_s,
                 .u_turns_s = scan->turns.u_s,
                 .dark_every = scan->policy.dark_every};
+  // As many lit visits an item as there were so far; the one that closes the scan at least.
+  const auto open = static_cast<double>(left.samples + left.references);
+  const auto made = static_cast<double>(scan->visit_time.count());
+  const double visits = made > 0.0 ? std::max(1.0, made * open / static_cast<double>(scan->item_time.count())) : 0.0;
+  left.other_visits = seconds(visits * scan->visit_time.mean_s());
   const auto& rungs = scan->chooser.rungs();
   for (std::size_t rung = scan->lowest_rung.value_or(0); rung <= scan->highest_rung.value_or(0); ++rung) {
     left.dark_light += dark_frames() * rungs[rung];

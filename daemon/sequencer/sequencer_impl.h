@@ -156,9 +156,14 @@ struct Sequencer::Impl {
   [[nodiscard]] int dark_frames() const;
   /// Whether a visit is due, or might be once its detour is looked at.
   [[nodiscard]] bool visit_may_be_next(Instant now) const;
+  [[nodiscard]] Detour detour_of(NextJob visit, Instant now) const;
   void start_dark(Instant now);
   void accept_dark(Job& job, Instant now);
-  void dark_failed(const Error& error, Instant now);
+  void start_visit(NextJob visit, Instant now);
+  void accept_visit(Job& job, Instant now);
+  void reopen_since(VisitTrack& track, NewVisit& visit, Instant now);
+  void keep_in_spite_of_drift(double drift, std::int64_t points, Instant now);
+  void visit_failed(const Error& error, Instant now);
 
   // ---- commands (scan_commands.cpp) ----
   void run(const Command& command, Instant now);

@@ -199,6 +199,7 @@ class SqliteStoreReader final : public StoreReader {
       const ScanInfo info = read_scan(id);
       if (info.id == 0) return std::pair(false, std::move(all));
       all.isotropic = info.isotropic;
+      if (info.policy.reference_every > Duration::zero()) all.drift_limit = info.policy.drift_limit;
       for (const ScanPoint& point : read_points(*database_, id, -1, std::numeric_limits<std::int64_t>::max())) {
         all.points.push_back({.index = point.index, .geometry = point.geometry, .wavelength = point.wavelength});
       }

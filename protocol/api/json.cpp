@@ -70,7 +70,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(IdleSplit, commit_s, wire_s, dev
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(TimeSplit, move_s, settle_s, expose_s, read_s, idle_s, idle_by)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, sample, isotropic, state, outcome, who,
                                                 reference, instrument_sha256, submitted_utc, changed_utc, points,
-                                                merged, blocked, items, accepted, skipped, attempts, visits, spent,
+                                                merged, blocked, items, accepted, skipped, attempts, visits,
+                                                reference_visits, check_visits, measured_again, largest_drift, spent,
                                                 seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
                                                 median_relative_u, worst_relative_u, plan, plan_file, plan_parts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,

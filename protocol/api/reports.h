@@ -92,6 +92,10 @@ struct ScanReport {
   std::int64_t skipped = 0;
   std::int64_t attempts = 0;
   std::int64_t visits = 0;
+  std::int64_t reference_visits = 0;  ///< of them; likewise
+  std::int64_t check_visits = 0;      ///< the rest are of the dark
+  std::int64_t measured_again = 0;    ///< points, after a drift between two visits
+  double largest_drift = 0.0;         ///< relative, between two visits of one kind
   TimeSplit spent;
   TimeSplit seconds_a_point;
   std::vector<HoldReport> holds;

@@ -254,7 +254,7 @@ void ScanRig::take_power(const TakeFrame& take) {
   const double theta_r = world.stage.axes[stage::index_of(Axis::ThetaR)].position;
   const bool is_reference = world.stage.axes[stage::index_of(Axis::Carriage)].position > 60.0;
   const bool is_lit = world.stage.detector_shutter == stage::ShutterState::Open;
-  const double watts = world.zero_w + (is_lit ? world.power_w(theta_r, is_reference) : 0.0);
+  const double watts = world.zero_w + (is_lit ? world.power_w(theta_r, is_reference) * world.gain(clock_.now()) : 0.0);
   ++world.exposures;
   const double share = watts / take.power->range_w;
   FrameSummary frame;
@@ -300,7 +300,8 @@ FrameSummary ScanRig::frame_of(const drivers::ExposureSettings& settings) {
   const bool is_reference = carriage > 60.0;
   const bool is_lit = world.stage.detector_shutter == stage::ShutterState::Open;
   const double t = in_seconds(settings.exposure);
-  const double level = world.dark_dn + (is_lit ? world.rate_dn_per_s(theta_r, is_reference) * t : 0.0);
+  const double level =
+      world.dark_dn + (is_lit ? world.rate_dn_per_s(theta_r, is_reference) * world.gain(clock_.now()) * t : 0.0);
   if (is_lit) {
     const auto key = static_cast<std::int32_t>(std::lround(theta_r));
     ++world.exposed_at[{key, is_reference ? calibration::Target::Reference : calibration::Target::Sample}];

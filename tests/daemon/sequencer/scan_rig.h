@@ -34,6 +34,7 @@ struct ScriptedInstrument {
   Instant frame_due{};               ///< of the last exposure
   int moves_beside_a_frame = 0;      ///< begun after the light and before the frame
   double monitor = 1.0;
+  std::function<double(Instant)> gain = [](Instant) { return 1.0; };  ///< of lamp or detector, unseen by the monitor
   // Of a radiometer in the camera's place, and of one in the lamp's light.
   double zero_w = 3e-7;  ///< in the dark
   std::function<double(double theta_r_deg, bool is_reference)> power_w = [](double, bool) { return 4e-5; };
