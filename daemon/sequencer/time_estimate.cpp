@@ -9,10 +9,12 @@ namespace {
 
 // Standard deviation of a count that is rounded to whole ones (JCGM 100:2008, 4.3.7: 1 / sqrt(12)).
 constexpr double kRounding = 0.289;
+constexpr double kCommitGain = 0.02;   // of an exponential mean: fifty items
+constexpr double kCommitDoubt = 0.5;   // of that mean: the next hour need not be like the last minute, relative
 constexpr double kRatioError = 0.003;  // of moves to come beside those measured, relative
 
 Duration working(const TimeParts& took) {
-  return took.expose + took.read + took.idle.commit + took.idle.wire + took.idle.planning;
+  return took.expose + took.read + took.idle.wire + took.idle.planning;
 }
 
 // The first one probes; it counts only while it is alone.
@@ -65,6 +67,7 @@ void EndEstimate::add_item(calibration::Target target, const TimeParts& took, co
   const bool drops_first = has_first;
   has_first = work.count() == 0 && !drops_first;
   add_after_first(work, working(took), drops_first);
+  commit_s_ += kCommitGain * (in_seconds(took.idle.commit) - commit_s_);
   if (is_turn) return;
   took_s_ += in_seconds(took.move + took.settle);
   by_model_s_ += in_seconds(model.move + model.settle);
@@ -85,7 +88,9 @@ Remaining EndEstimate::of(const WorkLeft& left) const {
 Remaining EndEstimate::work_of(const WorkLeft& left) const {
   const DurationStatistics& sample = sample_.count() > 0 ? sample_ : reference_;
   const DurationStatistics& reference = reference_.count() > 0 ? reference_ : sample_;
-  return remaining(sample, left.samples) + remaining(reference, left.references);
+  const double waits_s = commit_s_ * static_cast<double>(left.samples + left.references);
+  return remaining(sample, left.samples) + remaining(reference, left.references) +
+         Remaining{waits_s, squared(kCommitDoubt * waits_s)};
 }
 
 Remaining EndEstimate::way_of(const WorkLeft& left) const {

@@ -50,7 +50,8 @@ struct WorkLeft {
 
 /// What a scan still takes, from what its items took: light, frames and idle by the mean of each target; moves by the
 /// model, corrected by what those before took beside it; turns between sample and reference, and darks, by themselves.
-/// The first item of each target is left out as soon as there is another: it probes for its exposure. Time in holds and
+/// The first item of each target is left out as soon as there is another: it probes for its exposure. Waits for
+/// the store are those of late: a disk that others use has hours of its own. Time in holds and
 /// of devices that failed says nothing about what is to come.
 class EndEstimate {
  public:
@@ -74,7 +75,8 @@ class EndEstimate {
   DurationStatistics dark_beyond_light_;
   bool only_first_sample_ = false;
   bool only_first_reference_ = false;
-  double took_s_ = 0.0;  ///< moves and settling that were no turns
+  double commit_s_ = 0.0;  ///< an item's wait for the store, lately
+  double took_s_ = 0.0;    ///< moves and settling that were no turns
   double by_model_s_ = 0.0;
 };
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "daemon/sequencer/time_estimate.h"
 #include "tests/daemon/sequencer/scan_rig.h"
 
@@ -37,6 +39,25 @@ TEST(EndEstimate, TheFirstItemOfATargetProbesAndCountsOnlyWhileItIsAlone) {
   estimate.add_item(Target::Sample, took(80ms, 30ms), {.move = 80ms, .settle = 20ms}, false);
 
   EXPECT_NEAR(estimate.of({.samples = 1}).time_s, 0.022, 1e-9);
+}
+
+TEST(EndEstimate, WaitsForTheStoreAreThoseOfLateAndDoubted) {
+  EndEstimate estimate;
+  const auto add = [&estimate](int items, Duration commit) {
+    TimeParts waited = took(80ms, 10ms);
+    waited.idle.commit = commit;
+    for (int k = 0; k < items; ++k) estimate.add_item(Target::Sample, waited, {.move = 80ms, .settle = 20ms}, false);
+  };
+  add(50, 400ms);
+  add(500, 0ms);  // ten times the mean's memory
+
+  EXPECT_NEAR(estimate.of({.samples = 1000}).time_s, 12.0, 0.1);
+
+  add(500, 100ms);
+  const Remaining left = estimate.of({.samples = 1000});
+
+  EXPECT_NEAR(left.time_s, 112.0, 0.1);
+  EXPECT_NEAR(std::sqrt(left.variance_s2), 50.0, 0.5);
 }
 
 TEST(EndEstimate, TimeInHoldsAndOfFailedDevicesSaysNothingOfWhatComes) {
