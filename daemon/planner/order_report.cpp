@@ -32,11 +32,11 @@ class TreeBound {
   }
 
   double raise(double walk_s) {
-    constexpr int kRounds = 200;
+    constexpr int kAscents = 200;
     std::vector<double> multiplier(n_, 0.0);
     double best_s = 0.0;
     double stride = 1.5;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kAscents; ++round) {
       const double bound_s = tree(multiplier);
       best_s = std::max(best_s, bound_s);
       double excess = 0.0;
