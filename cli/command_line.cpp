@@ -113,20 +113,41 @@ class CommandLine {
     run.add_option("file", wanted_.file, "plan.toml")->required();
     run.add_flag("--watch", wanted_.watch, "show progress until it ends");
     run.add_option("--key", wanted_.key, "the same key again gives the same scan");
-    leaf(scan, "list", "all scans, newest first", Verb::ScanList);
+    run.add_option("--priority", wanted_.priority, "higher ones run first (0)")->check(CLI::Range(-100, 100));
+    run.add_option("--at", wanted_.start_utc, "not before this time, in UTC: 2026-11-22T18:05Z");
+    run.add_flag("--preempt", wanted_.preempt, "run inside a scan of lower priority, which goes on by itself after");
+    leaf(scan, "list", "scans: those under way, the queue in its order, then the rest, newest first", Verb::ScanList);
     scan_leaf(scan, "show", "one scan", Verb::ScanShow);
     scan_leaf(scan, "watch", "progress until it ends", Verb::ScanWatch);
     CLI::App& pause = scan_leaf(scan, "pause", "wait after the item in hand", Verb::ScanPause);
     pause.add_flag("--now", wanted_.now, "drop the item in hand");
     pause.add_option("--reason", wanted_.reason, "for the record");
-    scan_leaf(scan, "resume", "clear the holds and go on", Verb::ScanResume);
+    CLI::App& resume = scan_leaf(scan, "resume", "end the holds whose cause is gone, and go on", Verb::ScanResume);
+    resume.add_option("--hold", wanted_.hold, "just this one")
+        ->check(CLI::IsMember({"operator", "lamp", "door", "device", "disk", "restart"}));
     scan_leaf(scan, "finish", "end early, keep the data", Verb::ScanFinish);
     scan_leaf(scan, "abort", "end at once", Verb::ScanAbort).add_option("--reason", wanted_.reason, "for the record");
     scan_leaf(scan, "skip", "give up the item in hand", Verb::ScanSkip);
+    add_scan_change(scan);
+    scan_leaf(scan, "complete-missing", "queue a new scan of the points that an ended one lacks",
+              Verb::ScanCompleteMissing);
     CLI::App& compare =
         scan_leaf(scan, "compare", "two scans of one plan, point by point in units of U", Verb::ScanCompare);
     compare.add_option("other", wanted_.other_scan, "the other scan's number")->required()->check(CLI::PositiveNumber);
     scan_leaf(scan, "repeat", "run a scan's plan again, and compare", Verb::ScanRepeat);
+  }
+
+  void add_scan_change(CLI::App& scan) {
+    CLI::App& change = scan_leaf(scan, "change", "change what is not measured yet", Verb::ScanChange);
+    api::ChangeRequest& to = wanted_.change;
+    change.add_option("--snr", to.target_snr, "signal-to-noise of a reading")->check(CLI::Range(1.0, 1e6));
+    change.add_option("--max-time", to.max_time_s, "of one reading, s")->check(CLI::Range(1e-4, 3600.0));
+    change.add_option("--order", to.order, "of the points not begun")
+        ->check(CLI::IsMember({"as-written", "reversed", "random"}));
+    change.add_option("--seed", to.seed, "of a random order")->check(CLI::NonNegativeNumber);
+    change.add_option("--priority", to.priority, "higher ones run first")->check(CLI::Range(-100, 100));
+    change.add_option("--at", to.start_utc, "of a queued scan: not before this time, in UTC: 2026-11-22T18:05Z");
+    change.add_option("--reason", to.reason, "for the record");
   }
 
   void add_replay() {

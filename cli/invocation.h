@@ -29,6 +29,8 @@ enum class Verb : std::uint8_t {
   ScanFinish,
   ScanAbort,
   ScanSkip,
+  ScanChange,
+  ScanCompleteMissing,
   ScanCompare,
   ScanRepeat,
   Replay,
@@ -55,8 +57,13 @@ struct Invocation {
   bool move = false;       ///< doctor
   std::int64_t after = 0;  ///< events
   std::string reason;
-  std::string key;          ///< Idempotency-Key; empty: a new one
-  api::MoveRequest target;  ///< of a move by hand
+  std::string hold;           ///< resume: just this one
+  int priority = 0;           ///< run
+  bool preempt = false;       ///< run
+  std::string start_utc;      ///< run: not before
+  api::ChangeRequest change;  ///< of a scan's rest
+  std::string key;            ///< Idempotency-Key; empty: a new one
+  api::MoveRequest target;    ///< of a move by hand
   api::DetectorReadRequest reading;
 };
 

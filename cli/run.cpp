@@ -66,13 +66,17 @@ class Runner {
       case Verb::ScanPause:
         return command(RouteId::ScanPause, api::to_json(api::PauseRequest{wanted_.now, wanted_.reason}));
       case Verb::ScanResume:
-        return command(RouteId::ScanResume, "{}");
+        return command(RouteId::ScanResume, api::to_json(api::ResumeRequest{wanted_.hold}));
       case Verb::ScanFinish:
         return command(RouteId::ScanFinish, "{}");
       case Verb::ScanAbort:
         return command(RouteId::ScanAbort, api::to_json(api::AbortRequest{wanted_.reason}));
       case Verb::ScanSkip:
         return command(RouteId::ScanSkip, "{}");
+      case Verb::ScanChange:
+        return command(RouteId::ScanChange, api::to_json(wanted_.change));
+      case Verb::ScanCompleteMissing:
+        return command(RouteId::ScanCompleteMissing, "{}");
       case Verb::ScanCompare:
         return compare_scans(wanted_.scan, wanted_.other_scan);
       case Verb::ScanRepeat:
@@ -139,8 +143,11 @@ class Runner {
   }
 
   Result<std::string> submission() {
-    const Result<api::PlanSubmission> plan = read_plan(wanted_.file);
+    Result<api::PlanSubmission> plan = read_plan(wanted_.file);
     if (!plan) return failure(plan.error());
+    plan->priority = wanted_.priority;
+    plan->preempt = wanted_.preempt;
+    plan->start_utc = wanted_.start_utc;
     return api::to_json(*plan);
   }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "base/error.h"
 
 namespace gonio::cli {
@@ -48,6 +51,34 @@ std::string percent_text(const std::optional<double>& fraction) {
 double share(const api::ScanReport& scan) {
   if (scan.items == 0) return 0.0;
   return kPercent * static_cast<double>(scan.accepted + scan.skipped) / static_cast<double>(scan.items);
+}
+
+// Under way first, then the queue in its order, then what is over.
+std::int64_t place_in_list(const api::ScanReport& scan) {
+  if (scan.queue_place) return *scan.queue_place;
+  const bool is_over =
+      scan.state == "done" || scan.state == "finished-early" || scan.state == "aborted" || scan.state == "failed";
+  return is_over ? std::numeric_limits<std::int64_t>::max() : 0;
+}
+
+std::string warm_up_text(const std::optional<api::WarmUpReport>& warm_up) {
+  if (!warm_up) return {};
+  const std::string slope = warm_up->slope_percent_per_min
+                                ? fmt::format("{:.3g} %/min", *warm_up->slope_percent_per_min)
+                                : std::string("not known yet");
+  return fmt::format("its slope is {}, limit {:.3g} %/min; waited {}, at least {} more, at most {}", slope,
+                     warm_up->limit_percent_per_min, duration_text(warm_up->waited_s),
+                     duration_text(warm_up->at_least_s), duration_text(warm_up->at_most_s));
+}
+
+std::string numbers_text(const std::vector<std::int64_t>& numbers) {
+  std::string text;
+  for (const std::int64_t number : numbers) text += (text.empty() ? "" : ", ") + std::to_string(number);
+  return text;
+}
+
+std::string scan_number(std::int64_t scan) {
+  return scan == 0 ? std::string() : std::to_string(scan);
 }
 
 std::string stage_words(const api::StageReport& stage) {
@@ -105,7 +136,9 @@ Table view(const api::StatusReport& status) {
       .add("uptime", duration_text(status.uptime_s))
       .add("doing", status.doing)
       .add("scan", status.active ? progress_text(*status.active) : "none")
-      .add("queued", std::to_string(status.queued.size()))
+      .add("preempted", numbers_text(status.aside))
+      .add("queued", numbers_text(status.queued))
+      .add("lamp", warm_up_text(status.warm_up))
       .add("stage", status.stage ? stage_words(*status.stage) : "not seen yet")
       .add("stage_error", error_text(status.stage_error))
       .add("detector_error", error_text(status.detector_error))
@@ -165,6 +198,11 @@ Table view(const api::ScanReport& scan) {
       .add("holds", holds_text(scan))
       .add("doing", scan.doing)
       .add("who", scan.who)
+      .add("priority", std::to_string(scan.priority))
+      .add("turn", scan.queue_place ? std::to_string(*scan.queue_place) : "")
+      .add("start_utc", scan.start_utc.value_or(""))
+      .add("completes", scan_number(scan.completes))
+      .add("completed_by", scan_number(scan.completed_by))
       .add("submitted_utc", scan.submitted_utc)
       .add("changed_utc", scan.changed_utc)
       .add("points", std::to_string(scan.points))
@@ -188,12 +226,17 @@ Table view(const api::ScanReport& scan) {
 }
 
 Table view(const api::ScanList& scans) {
-  Table table{.header = {"scan", "state", "done_percent", "accepted", "items", "sample", "submitted_utc", "name"},
+  Table table{.header = {"scan", "state", "done_percent", "accepted", "items", "sample", "submitted_utc", "name",
+                         "priority", "turn", "start_utc"},
               .rows = {}};
-  for (const api::ScanReport& scan : scans.scans) {
+  std::vector<api::ScanReport> in_order = scans.scans;
+  std::stable_sort(in_order.begin(), in_order.end(),
+                   [](const auto& a, const auto& b) { return place_in_list(a) < place_in_list(b); });
+  for (const api::ScanReport& scan : in_order) {
     table.rows.push_back({std::to_string(scan.id), scan.state, fmt::format("{:.1f}", share(scan)),
                           std::to_string(scan.accepted), std::to_string(scan.items), scan.sample, scan.submitted_utc,
-                          scan.name});
+                          scan.name, std::to_string(scan.priority),
+                          scan.queue_place ? std::to_string(*scan.queue_place) : "", scan.start_utc.value_or("")});
   }
   return table;
 }
@@ -257,6 +300,7 @@ Table view(const api::CommandReport& command) {
   if (command.scan != 0) facts.add("scan", std::to_string(command.scan));
   facts.add("done", yes_no(true));
   if (command.existed) facts.add("existed", yes_no(true));
+  if (!command.note.empty()) facts.add("note", command.note);
   return facts.take();
 }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "base/utc_text.h"
 #include "daemon/app/calibration_desk.h"
+#include "daemon/app/completion_desk.h"
 #include "daemon/app/hand_reading_report.h"
 #include "daemon/app/instrument_report.h"
 #include "daemon/app/plan_desk.h"
@@ -37,16 +39,60 @@ Verb verb_of(ScanId scan, ScanVerb verb, const std::string& reason) {
       return PauseScan{.scan = scan, .now = false, .reason = reason};
     case ScanVerb::PauseNow:
       return PauseScan{.scan = scan, .now = true, .reason = reason};
-    case ScanVerb::Resume:
-      return ResumeScan{scan};
     case ScanVerb::Finish:
       return FinishScan{scan};
     case ScanVerb::Abort:
       return AbortScan{.scan = scan, .reason = reason};
     case ScanVerb::Skip:
-      return SkipItemInHand{scan};
+      break;
   }
-  return ResumeScan{scan};
+  return SkipItemInHand{scan};
+}
+
+ScanAsk ask_of(ScanVerb verb) {
+  switch (verb) {
+    case ScanVerb::Pause:
+      return ScanAsk::Pause;
+    case ScanVerb::PauseNow:
+      return ScanAsk::PauseNow;
+    case ScanVerb::Finish:
+      return ScanAsk::Finish;
+    case ScanVerb::Abort:
+      return ScanAsk::Abort;
+    case ScanVerb::Skip:
+      break;
+  }
+  return ScanAsk::Skip;
+}
+
+Error no_such(const std::string& field, const std::string& seen, const std::string& limit) {
+  return {.code = ErrorCode::InvalidInput,
+          .tried = "read the request",
+          .seen = "\"" + seen + "\"",
+          .limit = limit,
+          .where = InputLocation{"", 0, field}};
+}
+
+Result<void> check_priority(int priority) {
+  if (priority >= -kHighestPriority && priority <= kHighestPriority) return {};
+  return failure({.code = ErrorCode::OutOfLimits,
+                  .tried = "queue the scan",
+                  .seen = fmt::format("priority {}", priority),
+                  .limit = fmt::format("-{0} to {0}", kHighestPriority),
+                  .where = InputLocation{"", 0, "priority"}});
+}
+
+Result<ChangeScan> change_of(std::int64_t scan, const api::ChangeRequest& request) {
+  ChangeScan change{.scan = scan,
+                    .target_snr = request.target_snr,
+                    .seed = static_cast<std::uint64_t>(request.seed),
+                    .priority = request.priority,
+                    .reason = request.reason};
+  if (request.max_time_s) change.max_time = seconds(*request.max_time_s);
+  if (!request.order) return change;
+  change.order = rest_order_from_name(*request.order);
+  if (change.order) return change;
+  return failure(no_such("order", *request.order, "as-written, reversed, random"));
 }
 
 NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, const std::string& key,
@@ -143,7 +189,7 @@ void DaemonService::stop(const std::string& who, Reply<api::StopReport> reply) {
 void DaemonService::command(const std::string& who, Verb verb, Reply<api::CommandReport> reply) {
   parts_.engine.command(who, std::move(verb), [reply = std::move(reply)](const Result<CommandDone>& done) {
     if (!done) return reply(failure(done.error()));
-    reply(api::CommandReport{.scan = done->scan, .existed = done->existed});
+    reply(api::CommandReport{.scan = done->scan, .existed = done->existed, .note = done->note});
   });
 }
 
@@ -176,15 +222,67 @@ void DaemonService::read_detector(const api::DetectorReadRequest& request, const
 
 void DaemonService::submit_scan(const api::PlanSubmission& submission, const std::string& idempotency_key,
                                 const std::string& who, Reply<api::CommandReport> reply) {
+  if (const auto allowed = check_priority(submission.priority); !allowed) return reply(failure(allowed.error()));
+  const auto start = start_from(submission.start_utc);
+  if (!start) return reply(failure(start.error()));
   Result<CheckedPlan> checked = daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now());
   if (!checked) return reply(failure(checked.error()));
-  command(who, SubmitScan{new_scan(std::move(*checked), submission, idempotency_key, who, parts_.instrument)},
-          std::move(reply));
+  NewScan scan = new_scan(std::move(*checked), submission, idempotency_key, who, parts_.instrument);
+  scan.turn = {.priority = submission.priority, .preempts = submission.preempt, .start = *start};
+  command(who, SubmitScan{std::move(scan)}, std::move(reply));
 }
 
 void DaemonService::change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,
                                 Reply<api::CommandReport> reply) {
+  if (const auto error = is_over_for(scan, ask_of(verb))) return reply(failure(*error));
   command(who, verb_of(scan, verb, reason), std::move(reply));
+}
+
+void DaemonService::resume_scan(std::int64_t scan, const api::ResumeRequest& request, const std::string& who,
+                                Reply<api::CommandReport> reply) {
+  ResumeScan resume{.scan = scan};
+  if (!request.hold.empty()) {
+    resume.hold = hold_from_name(request.hold);
+    if (!resume.hold) {
+      return reply(failure(no_such("hold", request.hold, "operator, lamp, door, device, disk, restart, preempted")));
+    }
+  }
+  if (const auto error = is_over_for(scan, ScanAsk::Resume)) return reply(failure(*error));
+  command(who, resume, std::move(reply));
+}
+
+void DaemonService::change_rest(std::int64_t scan, const api::ChangeRequest& request, const std::string& who,
+                                Reply<api::CommandReport> reply) {
+  Result<ChangeScan> change = change_of(scan, request);
+  if (!change) return reply(failure(change.error()));
+  const auto start = start_from(request.start_utc.value_or(""));
+  if (!start) return reply(failure(start.error()));
+  change->start = *start;
+  if (const auto error = is_over_for(scan, ScanAsk::Change)) return reply(failure(*error));
+  command(who, std::move(*change), std::move(reply));
+}
+
+void DaemonService::complete_missing(std::int64_t scan, const std::string& who, Reply<api::CommandReport> reply) {
+  Result<NewScan> missing = ask_store([&](StoreReader& store) {
+    return completion_of(store, scan, parts_.instrument, parts_.shelf, parts_.clock.utc_now(), who);
+  });
+  if (!missing) return reply(failure(missing.error()));
+  command(who, SubmitScan{std::move(*missing)}, std::move(reply));
+}
+
+std::optional<Error> DaemonService::is_over_for(std::int64_t scan, ScanAsk ask) {
+  const Result<ScanInfo> info = ask_store([scan](StoreReader& store) { return store.scan(scan); });
+  if (!info) return info.error().code == ErrorCode::NotFound ? std::optional(info.error()) : std::nullopt;
+  if (!is_over(info->state)) return std::nullopt;
+  return not_now(scan, info->state, false, ask);
+}
+
+// Kept as a moment of this boot: a step of the clock meanwhile does not move it.
+Result<std::optional<ScanTurn::Start>> DaemonService::start_from(const std::string& text) const {
+  if (text.empty()) return std::optional<ScanTurn::Start>();
+  const auto utc = utc_from_iso8601(text);
+  if (!utc) return failure(no_such("start_utc", text, "a time in UTC, as 2026-11-22T18:05Z"));
+  return std::optional(ScanTurn::Start{.at = parts_.clock.now() + (*utc - parts_.clock.utc_now()), .utc = *utc});
 }
 
 Result<api::StatusReport> DaemonService::status() {
@@ -199,10 +297,12 @@ Result<api::StatusReport> DaemonService::status() {
                            .doing = sequencer.doing,
                            .stage_stopped = sequencer.stage_stopped,
                            .queued = sequencer.queued,
+                           .aside = sequencer.aside,
                            .stage_error = parts_.engine.stage().error(),
                            .detector_error = parts_.engine.detector_error(),
                            .store_error = sequencer.store_error,
                            .last_event = *last};
+  if (sequencer.warm_up) report.warm_up = warm_up_report(*sequencer.warm_up);
   if (const auto state = parts_.engine.stage().value()) report.stage = stage_report(*state, now);
   if (sequencer.active) {
     const Result<ScanInfo> info = ask_store([&](StoreReader& store) { return store.scan(sequencer.active->scan); });

@@ -9,6 +9,7 @@
 #include "daemon/app/engine.h"
 #include "daemon/app/reference_shelf.h"
 #include "daemon/http/service.h"
+#include "daemon/sequencer/scan_machine.h"
 #include "daemon/store/store_reader.h"
 
 namespace gonio::daemon {
@@ -37,6 +38,12 @@ class DaemonService final : public Service {
   void change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,
                    Reply<api::CommandReport> reply) override;
 
+  void resume_scan(std::int64_t scan, const api::ResumeRequest& request, const std::string& who,
+                   Reply<api::CommandReport> reply) override;
+  void change_rest(std::int64_t scan, const api::ChangeRequest& request, const std::string& who,
+                   Reply<api::CommandReport> reply) override;
+  void complete_missing(std::int64_t scan, const std::string& who, Reply<api::CommandReport> reply) override;
+
   Result<api::StatusReport> status() override;
   api::HealthReport health() override;
   std::string metrics() override;
@@ -56,6 +63,11 @@ class DaemonService final : public Service {
   template <class Ask>
   auto ask_store(Ask ask) -> decltype(ask(std::declval<StoreReader&>()));
   void command(const std::string& who, Verb verb, Reply<api::CommandReport> reply);
+  /// Why a scan takes nothing of the kind any more, by the store; a store that cannot be read does not stand in the
+  /// way.
+  [[nodiscard]] std::optional<Error> is_over_for(std::int64_t scan, ScanAsk ask);
+  /// Errors: InvalidInput.
+  [[nodiscard]] Result<std::optional<ScanTurn::Start>> start_from(const std::string& text) const;
 
   Parts parts_;
   const Instant started_;

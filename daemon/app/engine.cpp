@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <system_error>
 
 #include "daemon/app/calibration_desk.h"
 #include "daemon/app/event_sentence.h"
@@ -259,6 +261,19 @@ void Engine::on_store(StoreActor::Answer answer) {
     for (const EventRecord& event : commit.receipt->events) publish(event);
   }
   if (commit.ticket != SequencerDesk::kOwnTicket) tell(std::move(commit));
+}
+
+// Told as news from outside, so that a tape has it: a replay on another disk takes the same way.
+std::optional<Instant> Engine::look_at_disk(Instant now) {
+  constexpr Duration kLookEvery = std::chrono::seconds(5);
+  if (config_.by_hand_from) return std::nullopt;
+  if (next_disk_look_ && now < *next_disk_look_) return next_disk_look_;
+  next_disk_look_ = now + kLookEvery;
+  std::error_code refused;
+  const auto folder = std::filesystem::absolute(config_.store_file).parent_path();
+  const auto space = std::filesystem::space(folder, refused);
+  if (!refused) tell(DiskSeen{.free_bytes = static_cast<std::int64_t>(space.available)});
+  return next_disk_look_;
 }
 
 void Engine::publish(const EventRecord& event) {

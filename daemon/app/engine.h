@@ -81,7 +81,7 @@ class Engine {
    public:
     explicit StoreDesk(Engine& engine) : engine_(engine), actor_(engine.writer_) {}
     void on(const StoreRequest& request, Instant now) { engine_.on_store(actor_.on(request, now)); }
-    std::optional<Instant> step(Instant) { return std::nullopt; }
+    std::optional<Instant> step(Instant now) { return engine_.look_at_disk(now); }
 
    private:
     Engine& engine_;
@@ -94,6 +94,7 @@ class Engine {
   void on_monitor(MonitorActor::Answer answer);
   void make_detector(const EngineDevices& devices);
   void on_store(StoreActor::Answer answer);
+  std::optional<Instant> look_at_disk(Instant now);
   void on_halt(const HaltPathReport& report);
   void on_reply(const CommandReply& reply);
   void publish(const EventRecord& event);
@@ -117,7 +118,8 @@ class Engine {
   Latest<drivers::StageState> stage_seen_;
   Latest<bool> detector_seen_;
   Latest<bool> monitor_seen_;
-  Instant turn_now_{};  ///< of the turn in hand, by hand
+  Instant turn_now_{};                     ///< of the turn in hand, by hand
+  std::optional<Instant> next_disk_look_;  ///< the store's thread only
   const Turns sequencer_turns_;
   TurnQueue<SequencerMessage> to_sequencer_;
 

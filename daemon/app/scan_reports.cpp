@@ -1,5 +1,7 @@
 #include "daemon/app/scan_reports.h"
 
+#include <algorithm>
+
 namespace gonio::daemon {
 namespace {
 
@@ -83,12 +85,30 @@ api::ScanReport scan_report(const ScanInfo& info, Instant now) {
   report.spent = time_split(info.spent);
   report.seconds_a_point = seconds_a_point(report.spent, report.accepted);
   report.holds = hold_reports(info.holds, now);
+  report.priority = info.turn.priority;
+  report.preempts = info.turn.preempts;
+  if (info.turn.start) report.start_utc = iso8601(info.turn.start->utc);
+  report.completes = info.turn.completes;
+  report.completed_by = info.completed_by;
+  return report;
+}
+
+api::WarmUpReport warm_up_report(const WarmUpProgress& progress) {
+  constexpr double kPercentPerMinute = 6000.0;
+  api::WarmUpReport report{.slope_percent_per_min = std::nullopt,
+                           .limit_percent_per_min = kPercentPerMinute * progress.limit_per_s,
+                           .waited_s = in_seconds(progress.waited),
+                           .at_least_s = in_seconds(progress.at_least),
+                           .at_most_s = in_seconds(progress.at_most)};
+  if (progress.slope_per_s) report.slope_percent_per_min = kPercentPerMinute * *progress.slope_per_s;
   return report;
 }
 
 void add_progress(api::ScanReport& report, const SequencerStatus& status, Instant now) {
   const std::optional<ScanState> state = scan_state_from_name(report.state);
   if (!state || is_over(*state)) return;  // the store knows first
+  const auto place = std::find(status.queued.begin(), status.queued.end(), report.id);
+  if (place != status.queued.end()) report.queue_place = 1 + (place - status.queued.begin());
   if (!status.active || status.active->scan != report.id) return;
   const Progress& progress = *status.active;
   report.doing = status.doing;

@@ -17,6 +17,7 @@ void add_progress(api::ScanReport& report, const SequencerStatus& status, Instan
 [[nodiscard]] api::StageReport stage_report(const drivers::StageState& state, Instant now);
 [[nodiscard]] api::PointReport point_report(const PointInfo& info);
 [[nodiscard]] api::Event event_report(const EventRecord& event);
+[[nodiscard]] api::WarmUpReport warm_up_report(const WarmUpProgress& progress);
 [[nodiscard]] api::TimeSplit time_split(const TimeParts& parts);
 
 }  // namespace gonio::daemon

@@ -25,7 +25,6 @@ SequencerDesk::SequencerDesk(SequencerConfig config, Ports ports, Instant now)
 void SequencerDesk::on(const SequencerMessage& message, Instant now) {
   if (const auto* answer = std::get_if<StageAnswer>(&message)) {
     next_look_ = now + ports_.look_every;
-    if (answer->ticket == kOwnTicket) return;
   }
   sequencer_.on(message, now);
   hand_on(now);

@@ -23,8 +23,8 @@ class SequencerDesk {
     Duration renew_every{};
     Duration look_every = std::chrono::seconds(1);
   };
-  /// Tickets of this desk's own looks at the stage; the sequencer never sees their answers.
-  static constexpr Ticket kOwnTicket = Ticket{1} << 63U;
+  /// Tickets of this desk's own looks at the stage: the sequencer watches door and lamp by them.
+  static constexpr Ticket kOwnTicket = kWatchTicket;
 
   SequencerDesk(SequencerConfig config, Ports ports, Instant now);
 

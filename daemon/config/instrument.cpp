@@ -13,6 +13,7 @@
 #include "base/toml_reader.h"
 #include "daemon/config/configuration_hash.h"
 #include "daemon/config/drives_section.h"
+#include "daemon/config/holds_section.h"
 #include "daemon/config/keep_out_section.h"
 #include "daemon/config/kinematics_section.h"
 #include "daemon/config/power_meter_section.h"
@@ -213,6 +214,8 @@ LampBand read_lamp_band(TomlReader& table) {
   band.low = table.number("monitor_low", kNotNegative);
   band.high = table.number("monitor_high", {.least = band.low});
   band.least_scatter = table.number_or("monitor_least_scatter", 0.0, kFraction);
+  band.before_shutter = table.flag_or("monitor_before_shutter", false);
+  band.warm_up = read_warm_up(table);
   return band;
 }
 
@@ -244,6 +247,7 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
   TomlReader lamp = root->table("lamp");
   instrument.model.lamp = read_lamp_model(lamp);
   instrument.lamp = read_lamp_band(lamp);
+  instrument.holds = read_holds(*root);
   GONIO_TRY(root->finish());
   instrument.sha256 = configuration_hash(*root, text);  // last: it asks for keys that this wire may not have
   return instrument;

@@ -13,6 +13,7 @@
 #include "calibration/detector_maps.h"
 #include "calibration/instrument_model.h"
 #include "daemon/config/detector_section.h"
+#include "daemon/config/holds.h"
 #include "daemon/config/power_meter.h"
 #include "drivers/links/serial_line.h"
 #include "drivers/stage_config.h"
@@ -63,6 +64,8 @@ struct LampBand {
   double low = 0.0;
   double high = 0.0;
   double least_scatter = 0.0;  ///< relative, of one sample: a monitor that scatters less is stuck; 0: not looked at
+  bool before_shutter = false;  ///< the monitor sees the lamp also while the source's shutter is closed
+  std::optional<LampWarmUp> warm_up;
 };
 
 /// The instrument as its file describes it: everything that goniod knows of it. A value: share it as const.
@@ -81,6 +84,7 @@ struct Instrument {
   std::optional<PowerMonitorConfig> monitor;              ///< nothing: the stage's own
   ConeAngles cones;
   LampBand lamp;
+  HoldRules holds;
   calibration::InstrumentModel model;
 
   /// Whether the stage latches encoders and monitor over each exposure of the detector.

@@ -40,7 +40,7 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
 
 bool is_slow(RouteId id) {
   return id == RouteId::PlanCheck || id == RouteId::ScanSubmit || id == RouteId::ScanBrdf ||
-         id == RouteId::ScanExport || id == RouteId::ScanOne;
+         id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
@@ -75,7 +75,6 @@ Result<Words> scan_words(RouteId id, const std::string& body) {
     return Words{ScanVerb::Abort, abort->reason};
   }
   GONIO_TRY(api::request_from_json<api::NoWords>(body));
-  if (id == RouteId::ScanResume) return Words{ScanVerb::Resume, {}};
   return Words{id == RouteId::ScanFinish ? ScanVerb::Finish : ScanVerb::Skip, {}};
 }
 
@@ -151,6 +150,16 @@ void Gateway::run_command(const HttpRequest& request, const RouteMatch& match,
       if (!plan) return refused(plan.error());
       return service_.submit_scan(*plan, request.header("idempotency-key"), request.who, reply);
     }
+    case RouteId::ScanResume: {
+      const Result<api::ResumeRequest> resume = api::request_from_json<api::ResumeRequest>(request.body);
+      return resume ? service_.resume_scan(match.scan, *resume, request.who, reply) : refused(resume.error());
+    }
+    case RouteId::ScanChange: {
+      const Result<api::ChangeRequest> change = api::request_from_json<api::ChangeRequest>(request.body);
+      return change ? service_.change_rest(match.scan, *change, request.who, reply) : refused(change.error());
+    }
+    case RouteId::ScanCompleteMissing:
+      return service_.complete_missing(match.scan, request.who, reply);
     default: {
       const Result<Words> words = scan_words(match.route->id, request.body);
       if (!words) return refused(words.error());

@@ -17,7 +17,7 @@ template <class T>
 using Reply = std::function<void(Result<T>)>;
 
 /// What a client may ask of a scan that is there.
-enum class ScanVerb : std::uint8_t { Pause, PauseNow, Resume, Finish, Abort, Skip };
+enum class ScanVerb : std::uint8_t { Pause, PauseNow, Finish, Abort, Skip };
 
 /// What stands behind the routes: the daemon as HTTP sees it.
 ///
@@ -45,6 +45,13 @@ class Service {
                            const std::string& who, Reply<api::CommandReport> reply) = 0;
   virtual void change_scan(std::int64_t scan, ScanVerb verb, const std::string& reason, const std::string& who,
                            Reply<api::CommandReport> reply) = 0;
+
+  virtual void resume_scan(std::int64_t scan, const api::ResumeRequest& request, const std::string& who,
+                           Reply<api::CommandReport> reply) = 0;
+  virtual void change_rest(std::int64_t scan, const api::ChangeRequest& request, const std::string& who,
+                           Reply<api::CommandReport> reply) = 0;
+  /// Queues a new scan of what an ended one lacks; the reply names the new one.
+  virtual void complete_missing(std::int64_t scan, const std::string& who, Reply<api::CommandReport> reply) = 0;
 
   [[nodiscard]] virtual Result<api::StatusReport> status() = 0;
   [[nodiscard]] virtual api::HealthReport health() = 0;

@@ -71,6 +71,7 @@ struct ActiveScan {
         points(std::move(stored.points)),
         holds(std::move(stored.holds)),
         spent(stored.spent),
+        turn(stored.turn),
         items(points.size(), std::move(stored.order), policy.block, stored.accepted, stored.skipped),
         chooser(instrument, policy),
         dark_owed(stored.dark_owed),
@@ -110,6 +111,8 @@ struct ActiveScan {
     return std::any_of(holds.begin(), holds.end(), [hold](const Hold& h) { return h.name == hold; });
   }
 
+  [[nodiscard]] bool is_only_preempted() const { return holds.size() == 1 && has_hold(HoldName::Preempted); }
+
   ScanId id;
   std::string name;
   ScanState state;
@@ -120,6 +123,7 @@ struct ActiveScan {
   std::vector<ScanPoint> points;
   std::vector<Hold> holds;
   TimeParts spent;
+  ScanTurn turn;
   ScanItems items;
   ExposureChooser chooser;
   Wavelength meter_wavelength;  ///< a radiometer's setting: of the first point's filter, for the whole scan
@@ -153,12 +157,27 @@ struct ActiveScan {
   DurationStatistics visit_time;                   ///< of the standard and the sample
 
   /// While preparing: what is verified so far.
-  enum class Preparation : std::uint8_t { Detector, Monitor, Look, LookAgain, Reset, Home, Verified, Shut, Zero };
+  enum class Preparation : std::uint8_t {
+    Detector,
+    Monitor,
+    Look,
+    LookAgain,
+    Reset,
+    Home,
+    Verified,
+    Shut,
+    Zero,
+    Lamp,   ///< the source's shutter opens: the monitor may stand behind it
+    WarmUp  ///< the lamp is looked at until it is warm
+  };
   Preparation preparation = Preparation::Detector;
   bool reset_tried = false;
   bool is_zeroed = false;  ///< a radiometer, in this run
   Instant look_again_at{};
   Instant prepared_since{};
+  std::optional<Instant> warm_up_since;  ///< while preparing waits for the lamp
+  int ends_by_themselves = 0;            ///< holds that ended so without an item accepted in between
+  std::int64_t accepted_at_end = 0;      ///< items, when the last of them ended
 };
 
 }  // namespace gonio::daemon

@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/sequencer/hand_reading.h"
+#include "daemon/sequencer/lamp_warm_up.h"
 #include "daemon/store/records.h"
 #include "drivers/stage.h"
 
@@ -28,9 +30,11 @@ struct PauseScan {
   bool now = false;
   std::string reason;
 };
-/// Clears the holds and goes on after preparing anew. Refused while the stage is stopped (reset it first).
+/// Clears one hold, or (none named) all whose cause is not seen to stand, and goes on, after preparing anew, when none
+/// is left. What is left is named in the answer. Refused when nothing was cleared, and while the stage is stopped.
 struct ResumeScan {
   ScanId scan = 0;
+  std::optional<HoldName> hold{};
 };
 /// Ends early with data kept: closing dark, then parked.
 struct FinishScan {
@@ -41,9 +45,25 @@ struct AbortScan {
   ScanId scan = 0;
   std::string reason;
 };
-/// Gives up the item in hand (and its partner), recorded.
+/// Gives up the item in hand (and its partner), recorded; of a scan that holds or prepares, the next one.
 struct SkipItemInHand {
   ScanId scan = 0;
+};
+/// The order of the points that have neither sample nor reference yet.
+enum class RestOrder : std::uint8_t { AsWritten, Reversed, Random };
+/// "as-written", "reversed", "random".
+[[nodiscard]] std::string_view rest_order_name(RestOrder order);
+[[nodiscard]] std::optional<RestOrder> rest_order_from_name(std::string_view name);
+/// Changes what is not measured yet; an item in hand is ended as it was begun. What is absent stays.
+struct ChangeScan {
+  ScanId scan = 0;
+  std::optional<double> target_snr{};
+  std::optional<Duration> max_time{};  ///< of one reading
+  std::optional<RestOrder> order{};
+  std::uint64_t seed = 1;  ///< of Random
+  std::optional<int> priority{};
+  std::optional<ScanTurn::Start> start{};  ///< only of a queued one
+  std::string reason{};
 };
 /// By hand, while no scan runs (none active, or the active one holds). Answered when the axes stand.
 struct MoveStage {
@@ -63,7 +83,7 @@ struct ReadDetector {
 };
 
 using Verb = std::variant<SubmitScan, PauseScan, ResumeScan, FinishScan, AbortScan, SkipItemInHand, MoveStage,
-                          HomeStage, ClearStage, ReadDetector>;
+                          HomeStage, ClearStage, ReadDetector, ChangeScan>;
 
 struct Command {
   CommandId id = 0;
@@ -78,6 +98,7 @@ struct CommandDone {
   ScanId scan = 0;
   bool existed = false;  ///< SubmitScan: the idempotency key was known; `scan` is the one it made then
   std::optional<HandReading> reading = std::nullopt;  ///< of ReadDetector
+  std::string note{};    ///< what is to be known besides: holds that are left, the item skipped
 };
 struct CommandReply {
   CommandId id = 0;
@@ -106,10 +127,12 @@ struct Progress {
 /// What `GET status` shows of the sequencer: a value, copied out after each message.
 struct SequencerStatus {
   std::optional<Progress> active;
-  std::vector<ScanId> queued;
-  std::string doing;                 ///< "exposing", "moving", "idle"
-  bool stage_stopped = false;        ///< STOP stands: reset needed
-  std::optional<Error> store_error;  ///< the store failed: nothing goes on until a resume reloads it
+  std::vector<ScanId> aside;              ///< pre-empted: they go on, the last first, when the active one is over
+  std::vector<ScanId> queued;             ///< in the order in which they would run if all might start now
+  std::string doing;                      ///< "exposing", "moving", "idle"
+  bool stage_stopped = false;             ///< STOP stands: reset needed
+  std::optional<WarmUpProgress> warm_up;  ///< while a scan waits for the lamp
+  std::optional<Error> store_error;       ///< the store failed: nothing goes on until a resume reloads it
 };
 
 }  // namespace gonio::daemon

@@ -36,6 +36,7 @@ ExposureChooser::ExposureChooser(const Instrument& instrument, const ScanPolicy&
   // The planner has checked them; a scan resumes under the same configuration only.
   if (auto stated = rungs_of(policy.exposures, rungs_)) stated_ = std::move(*stated);
   dark_dn_.assign(rungs_.size(), 0.0);
+  top_ = rungs_.size() - 1;
   if (instrument.detector.power) ranges_w_ = instrument.detector.power->ranges_w;
   for (const Duration rung : rungs_) weights_.push_back(in_seconds(rung));
   std::ranges::transform(ranges_w_, weights_.begin(), [](double range_w) { return 1.0 / range_w; });
@@ -90,7 +91,7 @@ ExposurePlan ExposureChooser::choose(const Signal& signal, std::size_t ceiling) 
   std::optional<ExposurePlan> cheapest;
   ExposurePlan nearest;
   double nearest_lack = std::numeric_limits<double>::infinity();
-  for (std::size_t rung = 0; rung <= std::min(ceiling, rungs_.size() - 1); ++rung) {
+  for (std::size_t rung = 0; rung <= std::min(ceiling, top_); ++rung) {
     const double level = dark_dn_[rung] + signal.rate_dn_per_s * weights_[rung];
     if (rung > 0 && level > kFill * full_scale_dn_) break;
     const ExposurePlan plan{rung, frames_needed(rung, signal)};
@@ -109,8 +110,22 @@ ExposurePlan ExposureChooser::choose(const Signal& signal, std::size_t ceiling) 
 
 ExposurePlan ExposureChooser::first_plan(calibration::Target target, int filter) const {
   const auto known = last_.find({target, filter});
-  if (known == last_.end()) return {.rung = rungs_.size() / 2, .frames = 1};
+  if (known == last_.end()) return {.rung = (top_ + 1) / 2, .frames = 1};
   return choose(known->second, rungs_.size() - 1);
+}
+
+bool ExposureChooser::change_limits(const DetectorConfig& detector, double target_snr, Duration max_time) {
+  target_snr_ = target_snr;
+  max_time_ = max_time;
+  const std::vector<Duration> ladder = exposure_ladder(detector, max_time);
+  top_ = ladder.size() - 1;
+  if (ladder.size() <= rungs_.size()) return false;
+  for (std::size_t rung = rungs_.size(); rung < ladder.size(); ++rung) {
+    rungs_.push_back(ladder[rung]);
+    weights_.push_back(in_seconds(ladder[rung]));
+    dark_dn_.push_back(0.0);
+  }
+  return true;
 }
 
 void ExposureChooser::remember(calibration::Target target, int filter, const Signal& signal) {

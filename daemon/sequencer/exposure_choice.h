@@ -74,6 +74,10 @@ class ExposureChooser {
   [[nodiscard]] double dark_dn(std::size_t rung) const { return dark_dn_[rung]; }
   void learn_frame_time(Duration beyond_exposure);
 
+  /// The plan's limits were changed: counts from the next choice on. Rungs that come up have no dark level yet; none
+  /// goes away, but none beyond `max_time` is chosen any more. True when there are more rungs than before.
+  bool change_limits(const DetectorConfig& detector, double target_snr, Duration max_time);
+
  private:
   [[nodiscard]] double frames_wished(std::size_t rung, const Signal& signal) const;
   [[nodiscard]] int frames_allowed(std::size_t rung) const;
@@ -83,6 +87,7 @@ class ExposureChooser {
   std::vector<double> ranges_w_;  ///< of a radiometer, by rung
   std::vector<std::size_t> stated_;
   std::vector<double> dark_dn_;
+  std::size_t top_ = 0;  ///< the highest rung that max_time_ allows
   std::map<std::pair<calibration::Target, int>, Signal> last_;
   double mean_change_;  ///< of signals, from item to item: |ln(ratio)|
   double target_snr_;

@@ -62,9 +62,9 @@ Result<void> Sequencer::Impl::check_reading(const ReadDetector& read) const {
       fmt::format("{} to {} s", in_seconds(detector.shortest_exposure), in_seconds(detector.longest_exposure))));
 }
 
-void Sequencer::Impl::run_verb(const Command& c, const ReadDetector& read, Instant) {
+void Sequencer::Impl::run_verb(const Command& c, const ReadDetector& read, Instant now) {
   if (const auto checked = check_reading(read); !checked) return reply(c.id, failure(checked.error()));
-  take_by_hand(c);
+  take_by_hand(c, now);
 }
 
 void Sequencer::Impl::begin_hand_reading(const drivers::StageState& state) {

@@ -20,6 +20,8 @@ namespace gonio::daemon {
 /// The sequencer has at most one stage, one detector and one monitor request and a few commits open at a time; it never
 /// withdraws one: an answer that it no longer wants is awaited, then dropped.
 using Ticket = std::uint64_t;
+/// Of looks at the stage that others ask for: the sequencer watches door and lamp by their answers.
+inline constexpr Ticket kWatchTicket = Ticket{1} << 63U;
 
 // ---- what the sequencer asks for (to the device and store threads) ----
 
@@ -152,8 +154,13 @@ struct StopHappened {
   std::string who;
 };
 
+/// What is free on the store's disk: now and then, and whenever it has changed much.
+struct DiskSeen {
+  std::int64_t free_bytes = 0;
+};
+
 /// New kinds come last: a tape knows them by their place.
 using SequencerMessage = std::variant<Command, StageAnswer, FrameAnswer, DetectorAnswer, CommitAnswer, UnfinishedAnswer,
-                                      StopHappened, MonitorAnswer, MonitorReady>;
+                                      StopHappened, MonitorAnswer, MonitorReady, DiskSeen>;
 
 }  // namespace gonio::daemon

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,33 +14,37 @@ namespace {
 constexpr std::size_t kMostWaiting = 64;
 constexpr std::size_t kMostQueued = 1000;
 
-Error busy(const std::string& tried, const std::string& seen) {
-  return Error{.code = ErrorCode::Busy, .device = "sequencer", .tried = tried, .seen = seen};
+std::string by_hand_name(const Verb& verb) {
+  if (std::holds_alternative<MoveStage>(verb)) return "stage move";
+  if (std::holds_alternative<ReadDetector>(verb)) return "detector read";
+  return std::holds_alternative<HomeStage>(verb) ? "stage home" : "stage reset";
 }
 
 }  // namespace
 
+Error Sequencer::Impl::busy(const std::string& tried, const std::string& seen) {
+  return Error{.code = ErrorCode::Busy, .device = "sequencer", .tried = tried, .seen = seen};
+}
+
+AuditEntry Sequencer::Impl::audit(const Command& c, ScanAsk ask, ScanId scan, const std::string& detail) {
+  return {.who = c.who,
+          .action = std::string(scan_ask_name(ask)),
+          .detail = fmt::format("scan {}{}{}", scan, detail.empty() ? "" : ": ", detail)};
+}
+
 void Sequencer::Impl::run(const Command& command, Instant now) {
   const bool is_resume = std::holds_alternative<ResumeScan>(command.verb);
-  if (store_error && !is_resume) return reply(command.id, failure(*store_error));
+  if (store_error && !is_resume) {
+    // With no scan to resume, whoever wants something has the store read again.
+    if (scan || load_call || !commits.empty()) return reply(command.id, failure(*store_error));
+    load_from_store();
+  }
   if (is_in_transition || load_call) {
     if (waiting.size() >= kMostWaiting) return reply(command.id, failure(busy("take a command", "64 wait already")));
     waiting.push_back(command);
     return;
   }
   std::visit([&](const auto& verb) { run_verb(command, verb, now); }, command.verb);
-}
-
-// True when the command concerns the active scan; else it is answered here.
-bool Sequencer::Impl::is_active(const Command& c, ScanId id) {
-  if (scan && scan->id == id) return true;
-  const bool is_queued = std::any_of(queue.begin(), queue.end(), [id](const ActiveScan& q) { return q.id == id; });
-  reply(c.id, failure(Error{.code = is_queued ? ErrorCode::WrongState : ErrorCode::NotFound,
-                            .device = "sequencer",
-                            .tried = "command scan " + std::to_string(id),
-                            .seen = is_queued ? "it is queued" : "no scan of this number is under way",
-                            .limit = is_queued ? "only abort is allowed while queued" : ""}));
-  return false;
 }
 
 bool Sequencer::Impl::refuse_while_stopped(const Command& c) {
@@ -60,8 +66,10 @@ void Sequencer::Impl::run_verb(const Command& c, const SubmitScan& submit, Insta
                         .instrument_hash = submit.scan.instrument_hash,
                         .points = submit.scan.planned.points,
                         .order = submit.scan.planned.order,
-                        .merged = submit.scan.planned.merged};
-  commit({.at = now, .writes = {submit.scan}, .events = {event_submitted(submit.scan)}},
+                        .merged = submit.scan.planned.merged,
+                        .turn = submit.scan.turn};
+  const AuditEntry entry{.who = c.who, .action = "submit", .detail = submit.scan.name};
+  commit({.at = now, .writes = {submit.scan, entry}, .events = {event_submitted(submit.scan)}},
          {.done =
               [this, id = c.id, stored = std::move(stored)](const CommitReceipt& receipt, Instant) mutable {
                 reply(id, CommandDone{.scan = receipt.new_scan, .existed = receipt.existed});
@@ -72,110 +80,88 @@ void Sequencer::Impl::run_verb(const Command& c, const SubmitScan& submit, Insta
           .reply_failure_to = c.id});
 }
 
-void Sequencer::Impl::run_verb(const Command& c, const PauseScan& pause, Instant now) {
-  if (!is_active(c, pause.scan)) return;
-  const bool can_hold = scan->state == ScanState::Holding || next_state(scan->state, ScanEvent::Hold);
-  if (!can_hold) return reply(c.id, failure(wrong_state(scan->id, scan->state, ScanEvent::Hold)));
-  if (pause.now) drop_job(now);
-  add_hold(HoldName::Operator, c.who, pause.reason.empty() ? "paused" : pause.reason, now, c.id);
-}
-
-void Sequencer::Impl::run_verb(const Command& c, const ResumeScan& resume, Instant now) {
-  if (!is_active(c, resume.scan)) return;
-  if (store_error) {
-    if (!commits.empty() || load_call) return reply(c.id, failure(busy("resume", "the store has not answered yet")));
-    resumed_by = c.who;
-    resume_command = c.id;
-    return load_from_store();
-  }
-  if (refuse_while_stopped(c)) return;
-  const bool waits_for_its_item = scan->state == ScanState::Running && !scan->holds.empty();
-  if (scan->state != ScanState::Holding && !waits_for_its_item) {
-    return reply(c.id, failure(wrong_state(scan->id, scan->state, ScanEvent::Resume)));
-  }
-  const ClearHolds clear{.scan = scan->id, .who = c.who};
-  const NewEvent cleared = event_holds_cleared(scan->id, std::exchange(scan->holds, {}), c.who);
-  if (scan->state == ScanState::Holding) {
-    return transition(ScanEvent::Resume, now, c.who, "resumed", c.id, {clear}, {cleared});
-  }
-  commit({.at = now, .writes = {clear}, .events = {cleared}},
-         {.done = [this, id = c.id, scan_id = scan->id](const CommitReceipt&,
-                                                        Instant) { reply(id, CommandDone{.scan = scan_id}); },
-          .reply_failure_to = c.id});
-}
-
 void Sequencer::Impl::run_verb(const Command& c, const FinishScan& finish, Instant now) {
-  if (!is_active(c, finish.scan)) return;
-  if (!next_state(scan->state, ScanEvent::Finish) || scan->finish_command) {
-    return reply(c.id, failure(wrong_state(scan->id, scan->state, ScanEvent::Finish)));
+  ActiveScan* ending = addressed(c, finish.scan, ScanAsk::Finish);
+  if (ending == nullptr || refuse_while_stopped(c)) return;
+  if (scan->finish_command) {
+    return reply(c.id, failure(not_now(scan->id, scan->state, false, ScanAsk::Finish,
+                                       scan->finish_command->who + " has asked for that already")));
   }
-  if (refuse_while_stopped(c)) return;
   if (scan->state == ScanState::Running) {
-    scan->finish_command = c;  // after the item in hand: advance() sees it
+    // After the item in hand: advance() sees it. A pause that waits for the same moment gives way.
+    if (scan->has_hold(HoldName::Operator)) {
+      end_holds(*scan, {HoldName::Operator}, c.who, "asked to finish", now, std::nullopt);
+    }
+    scan->finish_command = c;
     return;
   }
   const NewEvent cleared = event_holds_cleared(scan->id, std::exchange(scan->holds, {}), c.who);
   disown_calls();
-  transition(ScanEvent::Finish, now, c.who, "asked to finish", c.id, {ClearHolds{.scan = scan->id, .who = c.who}},
-             {cleared});
+  transition(ScanEvent::Finish, now, c.who, "asked to finish", c.id,
+             {ClearHolds{.scan = scan->id, .who = c.who}, audit(c, ScanAsk::Finish, scan->id, "")}, {cleared});
 }
 
 void Sequencer::Impl::run_verb(const Command& c, const AbortScan& abort, Instant now) {
   const std::string reason = abort.reason.empty() ? "aborted" : abort.reason;
-  const bool is_queued =
-      std::any_of(queue.begin(), queue.end(), [&](const ActiveScan& q) { return q.id == abort.scan; });
-  if (is_queued) return abort_queued(c, abort.scan, reason, now);
-  if (!is_active(c, abort.scan)) return;
+  const ActiveScan* ending = addressed(c, abort.scan, ScanAsk::Abort);
+  if (ending == nullptr) return;
+  if (!is_active(*ending)) return abort_waiting(c, *ending, reason, now);
   drop_job(now);
   disown_calls();
-  transition(ScanEvent::Abort, now, c.who, reason, c.id);
+  transition(ScanEvent::Abort, now, c.who, reason, c.id, {audit(c, ScanAsk::Abort, scan->id, reason)});
 }
 
-void Sequencer::Impl::abort_queued(const Command& c, ScanId id, const std::string& reason, Instant now) {
-  const ScanTransition step{
-      .scan = id, .from = ScanState::Queued, .to = ScanState::Aborted, .who = c.who, .reason = reason};
+void Sequencer::Impl::abort_waiting(const Command& c, const ActiveScan& waits, const std::string& reason, Instant now) {
+  const ScanId id = waits.id;
+  const ScanTransition step{.scan = id, .from = waits.state, .to = ScanState::Aborted, .who = c.who, .reason = reason};
   std::erase_if(queue, [id](const ActiveScan& q) { return q.id == id; });
+  std::erase_if(aside, [id](const ActiveScan& q) { return q.id == id; });
+  note_end(id, ScanState::Aborted);
   commit(
-      {.at = now, .writes = {step}, .events = {event_transition(step)}},
+      {.at = now, .writes = {step, audit(c, ScanAsk::Abort, id, reason)}, .events = {event_transition(step)}},
       {.done = [this, command = c.id, id](const CommitReceipt&, Instant) { reply(command, CommandDone{.scan = id}); },
        .reply_failure_to = c.id});
 }
 
 void Sequencer::Impl::run_verb(const Command& c, const SkipItemInHand& skip, Instant now) {
-  if (!is_active(c, skip.scan)) return;
-  if (!scan->job || scan->job->kind != Job::Kind::Item) {
-    return reply(c.id, failure(Error{.code = ErrorCode::WrongState,
-                                     .device = "sequencer",
-                                     .tried = "skip the item in hand",
-                                     .seen = "there is none"}));
+  if (addressed(c, skip.scan, ScanAsk::Skip) == nullptr) return;
+  std::optional<ItemKey> item;
+  if (scan->job && scan->job->kind == Job::Kind::Item) item = scan->job->item;
+  // While it waits, the next one is what it waits before: one that fails again and again can be left out.
+  if (scan->state != ScanState::Running) item = scan->items.next(now);
+  if (!item) {
+    return reply(c.id, failure(not_now(scan->id, scan->state, false, ScanAsk::Skip,
+                                       fmt::format("no item is in hand, it is {}", doing()))));
   }
-  const ItemKey item = scan->job->item;
   drop_job(now);
   StoreTransaction transaction{.at = now};
-  for (const ItemKey& gone : scan->items.give_up(item)) {
+  for (const ItemKey& gone : scan->items.give_up(*item)) {
     const SkipItem record{.scan = scan->id, .item = gone, .who = c.who, .reason = "skipped by hand"};
     transaction.writes.emplace_back(record);
     transaction.events.push_back(event_skipped(record));
   }
-  commit(std::move(transaction),
-         {.done = [this, id = c.id, scan_id = scan->id](const CommitReceipt&,
-                                                        Instant) { reply(id, CommandDone{.scan = scan_id}); },
-          .reply_failure_to = c.id});
+  const std::string what = fmt::format("point {} ({})", item->point, target_name(item->target));
+  transaction.writes.emplace_back(audit(c, ScanAsk::Skip, scan->id, what));
+  commit(std::move(transaction), {.done =
+                                      [this, id = c.id, scan_id = scan->id, what](const CommitReceipt&, Instant) {
+                                        reply(id, CommandDone{.scan = scan_id, .note = what + " is skipped"});
+                                      },
+                                  .reply_failure_to = c.id});
 }
 
 // ---- the stage by hand ----
 
-void Sequencer::Impl::run_verb(const Command& c, const MoveStage&, Instant) {
-  take_by_hand(c);
+void Sequencer::Impl::run_verb(const Command& c, const MoveStage&, Instant now) {
+  take_by_hand(c, now);
 }
-void Sequencer::Impl::run_verb(const Command& c, const HomeStage&, Instant) {
-  take_by_hand(c);
+void Sequencer::Impl::run_verb(const Command& c, const HomeStage&, Instant now) {
+  take_by_hand(c, now);
 }
-void Sequencer::Impl::run_verb(const Command& c, const ClearStage&, Instant) {
-  take_by_hand(c);
+void Sequencer::Impl::run_verb(const Command& c, const ClearStage&, Instant now) {
+  take_by_hand(c, now);
 }
 
-void Sequencer::Impl::take_by_hand(const Command& c) {
+void Sequencer::Impl::take_by_hand(const Command& c, Instant now) {
   const bool is_reading = std::holds_alternative<ReadDetector>(c.verb);
   const std::string tried = is_reading ? "read the detector by hand" : "move the stage by hand";
   if (by_hand) return reply(c.id, failure(busy(tried, "another such command is in work")));
@@ -187,13 +173,23 @@ void Sequencer::Impl::take_by_hand(const Command& c) {
                                              std::string(scan_state_name(scan->state)),
                                      .limit = "allowed while no scan is under way, or while it holds"}));
   }
+  const AuditEntry entry{.who = c.who, .action = by_hand_name(c.verb), .detail = ""};
+  commit({.at = now, .writes = {entry}, .events = {}}, {.done = [](const CommitReceipt&, Instant) {}});
   by_hand = c;
   by_hand_is_asked = false;
   by_hand_has_reset = false;
 }
 
 void Sequencer::Impl::start_by_hand() {
-  if (!by_hand || by_hand_is_asked || !channels_are_free()) return;
+  if (!by_hand || by_hand_is_asked) return;
+  if (scan && scan->state != ScanState::Holding) {
+    return end_by_hand(failure(Error{.code = ErrorCode::WrongState,
+                                     .device = "stage",
+                                     .tried = by_hand_name(by_hand->verb),
+                                     .seen = fmt::format("scan {} went on meanwhile", scan->id),
+                                     .limit = "allowed while no scan is under way, or while it holds"}));
+  }
+  if (!channels_are_free()) return;
   by_hand_is_asked = true;
   ask_stage(StageUse::HandLook, LookAtStage{});
 }

@@ -131,6 +131,20 @@ NewEvent event_reopened(const NewVisit& visit, double drift_limit, std::int64_t 
                 {"kept", kept}});
 }
 
+NewEvent event_changed(const ChangeScan& change, const ScanPolicy& policy, const ScanTurn& turn,
+                       const std::string& who) {
+  json body{{"reason", change.reason}};
+  if (change.target_snr) body["target_snr"] = {{"from", policy.target_snr}, {"to", *change.target_snr}};
+  if (change.max_time) {
+    body["max_time_s"] = {{"from", in_seconds(policy.max_time)}, {"to", in_seconds(*change.max_time)}};
+  }
+  if (change.order) body["order"] = rest_order_name(*change.order);
+  if (change.order == RestOrder::Random) body["seed"] = change.seed;
+  if (change.priority) body["priority"] = {{"from", turn.priority}, {"to", *change.priority}};
+  if (change.start) body["start_utc"] = iso8601(change.start->utc);
+  return event("scan-changed", change.scan, who, body);
+}
+
 NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch) {
   return event("stop", scan, who, {{"epoch", epoch}});
 }

@@ -24,6 +24,9 @@ namespace gonio::daemon {
 [[nodiscard]] NewEvent event_visit(const NewVisit& visit);
 /// `kept`: points between the visits that were measured again often enough.
 [[nodiscard]] NewEvent event_reopened(const NewVisit& visit, double drift_limit, std::int64_t kept);
+/// What was changed, with what it was before.
+[[nodiscard]] NewEvent event_changed(const ChangeScan& change, const ScanPolicy& policy, const ScanTurn& turn,
+                                     const std::string& who);
 [[nodiscard]] NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch);
 
 }  // namespace gonio::daemon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 namespace gonio::daemon {
@@ -140,6 +141,28 @@ Instant ScanItems::turns_at(Instant now, Duration each) const {
   if (on_reference_) return now + static_cast<std::int64_t>(block_.size()) * each;
   const Instant used_up = now + open_samples_ * each;
   return block_.empty() ? used_up : std::min(used_up, block_began_ + pass_);
+}
+
+bool ScanItems::owes_reference() const {
+  return std::any_of(block_.begin(), block_.end(),
+                     [this](std::int32_t point) { return reference_[static_cast<std::size_t>(point)] == Fate::Open; });
+}
+
+std::vector<std::int32_t> ScanItems::untouched() const {
+  std::vector<std::int32_t> points;
+  std::copy_if(order_.begin(), order_.end(), std::back_inserter(points), [this](std::int32_t point) {
+    const auto p = static_cast<std::size_t>(point);
+    return sample_[p] == Fate::Open && reference_[p] == Fate::Open;
+  });
+  return points;
+}
+
+void ScanItems::reorder(const std::vector<std::int32_t>& untouched) {
+  auto next = untouched.begin();
+  for (std::int32_t& point : order_) {
+    const auto p = static_cast<std::size_t>(point);
+    if (sample_[p] == Fate::Open && reference_[p] == Fate::Open && next != untouched.end()) point = *next++;
+  }
 }
 
 std::int64_t ScanItems::open(Target target) const {

@@ -43,6 +43,14 @@ class ScanItems {
   [[nodiscard]] std::vector<ItemKey> ahead(std::size_t at_most) const;
   /// When the carriage will change sides, if each item takes `each`.
   [[nodiscard]] Instant turns_at(Instant now, Duration each) const;
+  /// Points that are measured on the sample and not on the reference.
+  [[nodiscard]] bool owes_reference() const;
+  /// What is owed comes next, whatever the block's time.
+  void close_block() { on_reference_ = !block_.empty(); }
+  /// The points of which nothing is decided yet, in order.
+  [[nodiscard]] std::vector<std::int32_t> untouched() const;
+  /// Those in another order: the same points.
+  void reorder(const std::vector<std::int32_t>& untouched);
   /// Not decided yet.
   [[nodiscard]] std::int64_t open(calibration::Target target) const;
 

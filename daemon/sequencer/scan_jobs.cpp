@@ -277,6 +277,7 @@ void Sequencer::Impl::count_light(Job& job, Instant now) {
 }
 
 bool Sequencer::Impl::lamp_is_out(const drivers::GateRecord& gate, Instant now) {
+  see_lamp(gate.monitor_mean, now);
   constexpr std::uint32_t kFewestToJudge = 4;  // two samples of a live one may well be the same
   const LampBand& band = config.instrument.lamp;
   const double scatter = gate.monitor_se * std::sqrt(static_cast<double>(gate.monitor_samples));

@@ -24,9 +24,10 @@ void Sequencer::Impl::advance(Instant now) {
     run(command, now);
   }
   if (load_call || store_error) return;
-  if (!scan && !queue.empty()) activate_next(now);
-  const bool scan_leaves_the_stage = !scan || scan->state == ScanState::Holding;
-  if (scan_leaves_the_stage && !is_in_transition) start_by_hand();
+  if (scan && !is_in_transition) end_gone_holds(now);
+  if (scan && !is_in_transition && scan->state == ScanState::Holding) set_aside(now);
+  if (!scan && !is_in_transition) activate_next(now);
+  if (!is_in_transition) start_by_hand();
   if (is_in_transition) return;
   if (!scan) {
     if (!shutters_to_close || !channels_are_free()) return;
@@ -48,12 +49,6 @@ void Sequencer::Impl::advance(Instant now) {
   }
 }
 
-void Sequencer::Impl::activate_next(Instant now) {
-  scan.emplace(std::move(queue.front()));
-  scan->ledger.restart(now);
-  queue.pop_front();
-}
-
 // ---- after a restart ----
 
 void Sequencer::Impl::advance_found(Instant now) {
@@ -61,10 +56,14 @@ void Sequencer::Impl::advance_found(Instant now) {
     return transition(ScanEvent::Found, now, kDaemon, "the daemon ended before the scan did");
   }
   scan->is_found = false;
+  hold_for_disk(now);
   decide_after_restart(now);
 }
 
 void Sequencer::Impl::decide_after_restart(Instant now) {
+  if (scan->has_hold(HoldName::Preempted)) {
+    return end_holds(*scan, {HoldName::Preempted}, kDaemon, "the scan that ran first is over", now, std::nullopt);
+  }
   if (!resumed_by.empty()) {
     const std::string who = std::exchange(resumed_by, {});
     const NewEvent cleared = event_holds_cleared(scan->id, std::exchange(scan->holds, {}), who);
@@ -117,29 +116,17 @@ void Sequencer::Impl::entered(ScanState state, Instant now) {
     scan->reset_tried = false;
     scan->prepared_since = now;
     scan->visit_failures = 0;
+    scan->warm_up_since.reset();
+    hold_for_disk(now);
   }
   if (is_over(state)) {
-    if (scan->finish_command) reply(scan->finish_command->id, failure(wrong_state(scan->id, state, ScanEvent::Finish)));
+    if (scan->finish_command) {
+      reply(scan->finish_command->id, failure(not_now(scan->id, state, false, ScanAsk::Finish)));
+    }
+    note_end(scan->id, state);
     shutters_to_close = state == ScanState::Aborted || state == ScanState::Failed;
     scan.reset();
   }
-}
-
-// Waiting needs no permission: the hold acts at once, and is written as soon as the store takes it.
-void Sequencer::Impl::add_hold(HoldName name, const std::string& owner, const std::string& reason, Instant now,
-                               std::optional<CommandId> command) {
-  if (scan->has_hold(name)) {
-    if (command) reply(*command, CommandDone{.scan = scan->id});
-    return;
-  }
-  const Hold hold{.name = name, .owner = owner, .reason = reason, .since = now};
-  scan->holds.push_back(hold);
-  commit({.at = now, .writes = {AddHold{.scan = scan->id, .hold = hold}}, .events = {event_hold_added(scan->id, hold)}},
-         {.done =
-              [this, id = scan->id, command](const CommitReceipt&, Instant) {
-                if (command) reply(*command, CommandDone{.scan = id});
-              },
-          .reply_failure_to = command});
 }
 
 // ---- preparing: nothing mechanical is trusted ----
@@ -172,7 +159,18 @@ void Sequencer::Impl::advance_preparing(Instant now) {
       return ask_stage(StageUse::Darken, MoveTo{.epoch = epoch, .detector_shutter_open = false});
     case Preparation::Zero:
       return ask_detector(DetectorUse::Zero, ZeroDetector{});
+    case Preparation::Lamp:
+      return ask_stage(StageUse::LightLamp,
+                       MoveTo{.epoch = epoch, .source_shutter_open = true, .detector_shutter_open = false});
+    case Preparation::WarmUp:
+      return advance_warm_up(now);
     case Preparation::Verified:
+      if (!lamp_is_warm(now)) {
+        scan->preparation = config.instrument.lamp.before_shutter ? Preparation::WarmUp : Preparation::Lamp;
+        scan->look_again_at = now;
+        return advance_preparing(now);
+      }
+      lamp_was_warm = true;
       if (zero_is_due()) {
         scan->preparation = Preparation::Shut;
         return advance_preparing(now);
@@ -207,6 +205,9 @@ void Sequencer::Impl::verify_stage(const drivers::StageState& state, Instant now
     return add_hold(HoldName::Operator, "stage", "the stage is stopped: reset it, then resume", now);
   }
   if (state.interlock_open) return add_hold(HoldName::Door, "stage", "the interlock is open", now);
+  if (const auto out = watch.lamp_is_out()) {
+    return add_hold(HoldName::Lamp, "stage", *out + ": the lamp, or its monitor, has failed", now);
+  }
   epoch = std::max(epoch, state.epoch);  // of an earlier daemon's STOP, since reset
   stage_stopped = false;
   if (state.heartbeat_tripped || state.fault != 0) {
@@ -240,19 +241,28 @@ void Sequencer::Impl::look_again(Duration patience, const std::string& what, Ins
 
 // ---- running and finishing ----
 
+// What came to hold it meanwhile comes first, and the finish after it.
+void Sequencer::Impl::begin_finish(Instant now) {
+  drop_job(now);
+  const Command command = *std::exchange(scan->finish_command, std::nullopt);
+  const AuditEntry entry = audit(command, ScanAsk::Finish, scan->id, "");
+  if (scan->holds.empty()) {
+    return transition(ScanEvent::Finish, now, command.who, "asked to finish", command.id, {entry});
+  }
+  scan->finish_asked = true;
+  transition(ScanEvent::Hold, now, kDaemon, scan->holds.front().reason, command.id, {entry});
+}
+
 void Sequencer::Impl::advance_measuring(Instant now) {
   // Between two frames an item is in hand as much as during them; one that only moves is given up without loss.
   const bool is_in_hand = scan->job && (scan->job->phase == Job::Phase::Exposing ||
                                         (scan->job->measurement && !scan->job->measurement->readings().empty()));
+  if (!is_in_hand && scan->finish_command && scan->state == ScanState::Running) return begin_finish(now);
   if (!is_in_hand && !scan->holds.empty()) {
     drop_job(now);
     return transition(ScanEvent::Hold, now, kDaemon, scan->holds.front().reason);
   }
-  if (!is_in_hand && scan->finish_command && scan->state == ScanState::Running) {
-    drop_job(now);
-    const Command command = *std::exchange(scan->finish_command, std::nullopt);
-    return transition(ScanEvent::Finish, now, command.who, "asked to finish", command.id);
-  }
+  if (!is_in_hand && makes_way(now)) return advance_measuring(now);
   constexpr int kStepsAtOnce = 2;  // a few microseconds
   scan->way.look_on(config.instrument, scan->points, scan->items.order(), kStepsAtOnce);
   if (!scan->job) choose_job(now);

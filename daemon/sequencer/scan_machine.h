@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "base/error.h"
@@ -90,6 +91,30 @@ static_assert(has_no_step_twice(), "a state and an event lead to one state");
   }
   return std::nullopt;
 }
+
+/// What a client may ask of one scan.
+enum class ScanAsk : std::uint8_t { Pause, PauseNow, Resume, Finish, Abort, Skip, Change, CompleteMissing };
+inline constexpr std::array<ScanAsk, 8> kAllScanAsks{ScanAsk::Pause,  ScanAsk::PauseNow,       ScanAsk::Resume,
+                                                     ScanAsk::Finish, ScanAsk::Abort,          ScanAsk::Skip,
+                                                     ScanAsk::Change, ScanAsk::CompleteMissing};
+/// "pause", "complete-missing".
+[[nodiscard]] std::string_view scan_ask_name(ScanAsk ask);
+
+/// Whether a state takes it at all; what it needs besides (a hold to resume, an item to skip) is its own matter.
+/// `is_aside`: pre-empted, another scan has the instrument.
+[[nodiscard]] constexpr bool takes(ScanState state, bool is_aside, ScanAsk ask) {
+  if (ask == ScanAsk::CompleteMissing) return is_over(state);
+  if (is_over(state)) return false;
+  if (ask == ScanAsk::Pause || ask == ScanAsk::PauseNow || ask == ScanAsk::Resume || ask == ScanAsk::Abort) return true;
+  if (ask == ScanAsk::Change) return state != ScanState::Finishing;
+  const bool has_instrument =
+      !is_aside && (state == ScanState::Preparing || state == ScanState::Running || state == ScanState::Holding);
+  return has_instrument;  // finish, skip
+}
+
+/// The refusal of what a state does not take, or not now: WrongState. `seen` may say more than the state's name;
+/// the limit is what the state takes.
+[[nodiscard]] Error not_now(ScanId scan, ScanState state, bool is_aside, ScanAsk ask, const std::string& seen = {});
 
 /// The refusal of an event: WrongState, naming the event, the state, and the states that allow it.
 [[nodiscard]] Error wrong_state(ScanId scan, ScanState state, ScanEvent event);

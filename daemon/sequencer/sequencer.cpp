@@ -24,11 +24,7 @@ void Sequencer::on(const SequencerMessage& message, Instant now) {
 
 std::optional<Instant> Sequencer::step(Instant now) {
   impl_->advance(now);
-  const auto& scan = impl_->scan;
-  const bool looks_again = scan && scan->state == ScanState::Preparing && !impl_->is_in_transition &&
-                           scan->preparation == ActiveScan::Preparation::LookAgain && impl_->channels_are_free();
-  if (!looks_again) return std::nullopt;
-  return scan->look_again_at;
+  return impl_->next_wake(now);
 }
 
 std::vector<Request> Sequencer::take_requests() {
@@ -76,10 +72,19 @@ bool Sequencer::Impl::has_uncommitted_item() const {
 }
 
 void Sequencer::Impl::disown_calls() {
-  // A command by hand gets its answer, whatever becomes of the scan.
+  // A command gets its answer, whatever becomes of the scan.
   if (stage_call && stage_call->use < StageUse::HandLook) stage_call->use = StageUse::Dropped;
   if (detector_call && detector_call->use < DetectorUse::HandPrepare) detector_call->use = DetectorUse::Dropped;
   if (monitor_call) monitor_call->use = MonitorUse::Dropped;
+}
+
+std::optional<Instant> Sequencer::Impl::next_wake(Instant now) const {
+  std::optional<Instant> wake = next_start(now);
+  using Preparation = ActiveScan::Preparation;
+  const bool looks_again = scan && scan->state == ScanState::Preparing && !is_in_transition && channels_are_free() &&
+                           (scan->preparation == Preparation::LookAgain || scan->preparation == Preparation::WarmUp);
+  if (looks_again) wake = std::min(wake.value_or(scan->look_again_at), scan->look_again_at);
+  return wake;
 }
 
 // ---- answers ----
@@ -94,10 +99,15 @@ void Sequencer::Impl::note_stage(const drivers::StageState& state) {
 }
 
 void Sequencer::Impl::on_message(const StageAnswer& answer, Instant now) {
+  if (answer.ticket == kWatchTicket) {
+    if (answer.state) return see_stage(*answer.state, now);
+    return watch.see_stage_failing(answer.state.error());
+  }
   if (!stage_call || stage_call->ticket != answer.ticket) return;
   const StageUse use = stage_call->use;
   stage_call.reset();
   if (answer.state) note_stage(*answer.state);
+  if (answer.state) see_stage(*answer.state, now);
   switch (use) {
     case StageUse::Look:
       return on_look(answer.state, now);
@@ -107,6 +117,13 @@ void Sequencer::Impl::on_message(const StageAnswer& answer, Instant now) {
       return on_prepared_step(answer.state, ActiveScan::Preparation::Verified, now);
     case StageUse::Darken:
       return on_prepared_step(answer.state, ActiveScan::Preparation::Zero, now);
+    case StageUse::LightLamp:
+      return on_prepared_step(answer.state, ActiveScan::Preparation::WarmUp, now);
+    case StageUse::LampLook:
+      if (!answer.state) return on_prepared_step(answer.state, ActiveScan::Preparation::WarmUp, now);
+      return on_lamp_seen(now);
+    case StageUse::ResumeLook:
+      return on_resume_look(now);
     case StageUse::Before:
       return on_before(answer.state, now);
     case StageUse::After:
@@ -172,7 +189,13 @@ void Sequencer::Impl::on_message(const MonitorAnswer& answer, Instant now) {
   if (!monitor_call || monitor_call->ticket != answer.ticket) return;
   const MonitorUse use = monitor_call->use;
   monitor_call.reset();
-  if (use == MonitorUse::Reading) on_monitor(answer.reading, now);
+  if (use == MonitorUse::Reading) return on_monitor(answer.reading, now);
+  if (use != MonitorUse::Lamp || !scan) return;
+  if (!answer.reading) {
+    return add_hold(hold_for(answer.reading.error().code), "monitor", describe(answer.reading.error()), now);
+  }
+  see_lamp(answer.reading->reading.mean_w, now);
+  on_lamp_seen(now);
 }
 
 void Sequencer::Impl::on_message(const CommitAnswer& answer, Instant now) {
@@ -206,21 +229,16 @@ void Sequencer::Impl::on_message(const UnfinishedAnswer& answer, Instant /*now*/
   if (!answer.scans) {
     store_error = answer.scans.error();
     if (command) reply(*command, failure(answer.scans.error()));
+    for (const Command& waits : std::exchange(waiting, {})) reply(waits.id, failure(answer.scans.error()));
     return;
   }
   store_error.reset();
   scan.reset();
   queue.clear();
-  for (const UnfinishedScan& stored : *answer.scans) {
-    ActiveScan unfinished(stored, config.instrument);
-    unfinished.is_found = unfinished.state != ScanState::Queued;
-    if (unfinished.is_found) {
-      queue.push_front(std::move(unfinished));
-    } else {
-      queue.push_back(std::move(unfinished));
-    }
-  }
-  if (command) reply(*command, CommandDone{.scan = queue.empty() ? 0 : queue.front().id});
+  aside.clear();
+  for (const UnfinishedScan& stored : *answer.scans) take_up(stored);
+  if (!command) return;
+  reply(*command, CommandDone{.scan = aside.empty() ? 0 : aside.back().id});
 }
 
 void Sequencer::Impl::on_message(const StopHappened& stop, Instant now) {
@@ -243,6 +261,7 @@ std::string_view Sequencer::Impl::doing() const {
   if (hand_reading) return "read by hand";
   if (by_hand) return "moved by hand";
   if (!scan) return "idle";
+  if (scan->warm_up_since && scan->state == ScanState::Preparing) return "waiting for the lamp to be warm";
   if (scan->state != ScanState::Running && scan->state != ScanState::Finishing) return scan_state_name(scan->state);
   if (!scan->job) return "committing";
   switch (scan->job->phase) {
@@ -320,10 +339,12 @@ void Sequencer::Impl::look_at_turns() {
                                  .to_reference_s = in_seconds(travel_time(carriage, way) + carriage.settle)});
 }
 
-SequencerStatus Sequencer::Impl::status(Instant /*now*/) const {
+SequencerStatus Sequencer::Impl::status(Instant now) const {
   SequencerStatus s{.doing = std::string(doing()), .stage_stopped = stage_stopped, .store_error = store_error};
   if (scan) s.active = progress();
-  for (const ActiveScan& waits : queue) s.queued.push_back(waits.id);
+  for (const ActiveScan& one : aside) s.aside.push_back(one.id);
+  s.queued = queue_in_order();
+  s.warm_up = warm_up_progress(now);
   return s;
 }
 

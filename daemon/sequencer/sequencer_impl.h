@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "daemon/sequencer/active_scan.h"
+#include "daemon/sequencer/hold_watch.h"
+#include "daemon/sequencer/lamp_warm_up.h"
 #include "daemon/sequencer/scan_machine.h"
 #include "daemon/sequencer/sequencer.h"
 #include "daemon/sequencer/visit_schedule.h"
@@ -21,7 +23,11 @@ inline constexpr const char* kDaemon = "goniod";
 /// scan_jobs.cpp (moves, exposures, results), scan_ahead.cpp (the next move beside the last frame), scan_visits.cpp
 /// (visits, and which job is next), scan_commands.cpp (what clients ask).
 struct Sequencer::Impl {
-  explicit Impl(SequencerConfig configuration) : config(std::move(configuration)), epoch(config.epoch) {}
+  explicit Impl(SequencerConfig configuration)
+      : config(std::move(configuration)),
+        epoch(config.epoch),
+        watch(config.instrument.holds, config.instrument.lamp, config.instrument.monitor.has_value()),
+        lamp(config.instrument.lamp.warm_up) {}
 
   // ---- channels (sequencer.cpp) ----
   enum class StageUse : std::uint8_t {
@@ -36,13 +42,16 @@ struct Sequencer::Impl {
     Before,
     After,
     Shut,
+    LightLamp,
+    LampLook,
     HandLook,
     HandDone,
     HandShutters,
-    HandShuttersBack
+    HandShuttersBack,
+    ResumeLook
   };
   enum class DetectorUse : std::uint8_t { Dropped, Prepare, Zero, Frame, HandPrepare, HandFrame };
-  enum class MonitorUse : std::uint8_t { Dropped, Prepare, Reading };
+  enum class MonitorUse : std::uint8_t { Dropped, Prepare, Reading, Lamp };
   struct StageCall {
     Ticket ticket = 0;
     StageUse use = StageUse::Dropped;
@@ -81,8 +90,10 @@ struct Sequencer::Impl {
   void on_message(const CommitAnswer& answer, Instant now);
   void on_message(const UnfinishedAnswer& answer, Instant now);
   void on_message(const StopHappened& stop, Instant now);
+  void on_message(const DiskSeen& disk, Instant now);
   void note_stage(const drivers::StageState& state);
   void store_failed(const Error& error, std::optional<CommandId> command);
+  [[nodiscard]] std::optional<Instant> next_wake(Instant now) const;
   [[nodiscard]] SequencerStatus status(Instant now) const;
   [[nodiscard]] Progress progress() const;
   [[nodiscard]] WorkLeft work_left() const;
@@ -92,23 +103,57 @@ struct Sequencer::Impl {
   // ---- life (scan_life.cpp) ----
   /// What comes next, after anything happened.
   void advance(Instant now);
-  void activate_next(Instant now);
   void advance_found(Instant now);
   void advance_preparing(Instant now);
   void advance_measuring(Instant now);
+  void begin_finish(Instant now);
   void transition(ScanEvent event, Instant now, const std::string& who, const std::string& reason,
                   std::optional<CommandId> command = std::nullopt, std::vector<StoreWrite> more = {},
                   std::vector<NewEvent> more_events = {});
   void entered(ScanState state, Instant now);
   void count_state(ScanState state, Instant now);
-  void add_hold(HoldName name, const std::string& owner, const std::string& reason, Instant now,
-                std::optional<CommandId> command = std::nullopt);
+  void add_hold(HoldName name, const std::string& owner, const std::string& reason, Instant now);
   void on_look(const Result<drivers::StageState>& state, Instant now);
   void decide_after_restart(Instant now);
   void verify_stage(const drivers::StageState& state, Instant now);
   void on_prepared_step(const Result<drivers::StageState>& state, ActiveScan::Preparation next, Instant now);
   [[nodiscard]] bool zero_is_due() const;
   void look_again(Duration patience, const std::string& what, Instant now);
+
+  // ---- the lamp's warm-up (scan_warm_up.cpp) ----
+  [[nodiscard]] bool lamp_is_warm(Instant now) const;
+  void advance_warm_up(Instant now);
+  void on_lamp_seen(Instant now);
+  [[nodiscard]] std::optional<WarmUpProgress> warm_up_progress(Instant now) const;
+
+  // ---- holds (scan_holds.cpp) ----
+  void hold_scan(ActiveScan& held, Hold hold, Instant now, const std::optional<Command>& command);
+  void note_again(const ActiveScan& held, const Command& command, Instant now);
+  void end_holds(ActiveScan& held, const std::vector<HoldName>& names, const std::string& who,
+                 const std::string& reason, Instant now, const std::optional<Command>& command);
+  void end_gone_holds(Instant now);
+  void decide_resume(const Command& c, ActiveScan& held, std::optional<HoldName> wanted, Instant now);
+  void on_resume_look(Instant now);
+  void see_stage(const drivers::StageState& state, Instant now);
+  void see_lamp(double monitor, Instant now);
+  void hold_for_disk(Instant now);
+
+  // ---- whose turn it is (scan_queue.cpp) ----
+  [[nodiscard]] std::deque<ActiveScan>::iterator next_in_queue(Instant now);
+  [[nodiscard]] const ActiveScan* urgent(int priority, Instant now) const;
+  [[nodiscard]] std::optional<Instant> next_start(Instant now) const;
+  [[nodiscard]] std::vector<ScanId> queue_in_order() const;
+  void activate_next(Instant now);
+  void return_from_aside(Instant now);
+  [[nodiscard]] bool makes_way(Instant now);
+  void set_aside(Instant now);
+  void take_up(UnfinishedScan stored);
+  [[nodiscard]] ActiveScan* find_scan(ScanId id);
+  [[nodiscard]] bool is_active(const ActiveScan& one) const { return scan && &one == &*scan; }
+  [[nodiscard]] bool is_aside(const ActiveScan& one) const;
+  /// The scan that a command means, when its state takes it; else nullptr, and it is answered.
+  [[nodiscard]] ActiveScan* addressed(const Command& c, ScanId id, ScanAsk ask);
+  void note_end(ScanId id, ScanState state);
 
   // ---- jobs (scan_jobs.cpp) ----
   void start_item(const ItemKey& item, Instant now);
@@ -176,7 +221,11 @@ struct Sequencer::Impl {
   void run_verb(const Command& c, const MoveStage& move, Instant now);
   void run_verb(const Command& c, const HomeStage& home, Instant now);
   void run_verb(const Command& c, const ClearStage& clear, Instant now);
-  void take_by_hand(const Command& c);
+  void run_verb(const Command& c, const ChangeScan& change, Instant now);
+  void apply(const ScanChange& record, ActiveScan& changed, Instant now);
+  [[nodiscard]] static AuditEntry audit(const Command& c, ScanAsk ask, ScanId scan, const std::string& detail);
+  [[nodiscard]] static Error busy(const std::string& tried, const std::string& seen);
+  void take_by_hand(const Command& c, Instant now);
   void start_by_hand();
   void on_hand_look(const Result<drivers::StageState>& state);
   void on_hand_done(const Result<drivers::StageState>& state);
@@ -207,8 +256,7 @@ struct Sequencer::Impl {
   void end_hand_reading(Result<CommandDone> result);
   void on_hand_shutters_back(const Result<drivers::StageState>& state);
 
-  [[nodiscard]] bool is_active(const Command& c, ScanId scan);
-  void abort_queued(const Command& c, ScanId scan, const std::string& reason, Instant now);
+  void abort_waiting(const Command& c, const ActiveScan& waits, const std::string& reason, Instant now);
   [[nodiscard]] bool refuse_while_stopped(const Command& c);
 
   SequencerConfig config;
@@ -227,13 +275,20 @@ struct Sequencer::Impl {
   std::optional<Error> store_error;
   std::string resumed_by;  ///< who resumed after a store error: overrides the restart policy once
   std::optional<CommandId> resume_command;
-  std::deque<ActiveScan> queue;    ///< behind the active one
-  std::optional<ActiveScan> scan;  ///< the active one
-  bool is_in_transition = false;   ///< written, not yet committed: nothing is begun meanwhile
-  std::deque<Command> waiting;     ///< commands that came meanwhile
-  std::optional<Command> by_hand;  ///< the stage command in work
-  bool by_hand_is_asked = false;   ///< its first look is out
-  bool by_hand_has_reset = false;  ///< it has cleared a tripped heartbeat already
+  std::optional<Command> resume_waits;  ///< for a look at door and lamp
+  HoldWatch watch;
+  LampWatch lamp;
+  bool lamp_was_warm = false;        ///< by the criterion, and not out since
+  std::optional<Instant> lamp_seen;  ///< last, in its band
+  std::deque<ActiveScan> queue;      ///< behind the active one, by number
+  std::vector<ActiveScan> aside;     ///< under way, without the instrument: pre-empted, or found at start-up
+  std::deque<std::pair<ScanId, ScanState>> ended;  ///< the last ones
+  std::optional<ActiveScan> scan;                  ///< the active one
+  bool is_in_transition = false;                   ///< written, not yet committed: nothing is begun meanwhile
+  std::deque<Command> waiting;                     ///< commands that came meanwhile
+  std::optional<Command> by_hand;                  ///< the stage command in work
+  bool by_hand_is_asked = false;                   ///< its first look is out
+  bool by_hand_has_reset = false;                  ///< it has cleared a tripped heartbeat already
   std::optional<ReadingByHand> hand_reading;
 };
 

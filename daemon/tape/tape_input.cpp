@@ -14,6 +14,7 @@ using nlohmann::json;
 
 constexpr const char* kCommand = "command";
 constexpr const char* kStop = "stop";
+constexpr const char* kDisk = "disk";
 
 json numbers_of(const drivers::MotionTarget& target) {
   json numbers = json::array();
@@ -26,23 +27,56 @@ json or_null(const std::optional<T>& value) {
   return value ? json(*value) : json();
 }
 
+json json_of(const std::optional<ScanTurn::Start>& start) {
+  if (!start) return {};
+  return {{"at_ns", start->at.time_since_epoch().count()}, {"utc_ns", start->utc.time_since_epoch().count()}};
+}
+
+std::optional<ScanTurn::Start> start_from(const json& words) {
+  if (!words.is_object()) return std::nullopt;
+  return ScanTurn::Start{.at = Instant(Duration(words.at("at_ns").get<std::int64_t>())),
+                         .utc = UtcTime(Duration(words.at("utc_ns").get<std::int64_t>()))};
+}
+
+// A completion's points are no plan's: they stand for themselves, as do its name and what it goes by.
+json points_of(const PlannedScan& planned) {
+  json points = json::array();
+  for (const ScanPoint& point : planned.points) {
+    const Geometry& g = point.geometry;
+    points.push_back(
+        {point.rank, g.theta_i.si(), g.phi_i.si(), g.theta_r.si(), g.phi_r.si(), point.wavelength.si(), point.repeat});
+  }
+  return points;
+}
+
 json json_of(const SubmitScan& verb) {
   const NewScan& scan = verb.scan;
-  return {{"verb", "submit"},
-          {"key", scan.idempotency_key},
-          {"campaign", scan.campaign},
-          {"plan", scan.plan_text},
-          {"plan_file", scan.plan_file},
-          {"plan_parts", scan.plan_parts},
-          {"reference", scan.reference_text},
-          {"reference_serial", scan.reference_serial},
-          {"submitted_by", scan.who}};
+  json words{{"verb", "submit"},
+             {"key", scan.idempotency_key},
+             {"campaign", scan.campaign},
+             {"plan", scan.plan_text},
+             {"plan_file", scan.plan_file},
+             {"plan_parts", scan.plan_parts},
+             {"reference", scan.reference_text},
+             {"reference_serial", scan.reference_serial},
+             {"submitted_by", scan.who},
+             {"turn",
+              {{"priority", scan.turn.priority},
+               {"preempts", scan.turn.preempts},
+               {"start", json_of(scan.turn.start)},
+               {"completes", scan.turn.completes}}}};
+  if (scan.turn.completes != 0) {
+    words["completion"] = {{"points", points_of(scan.planned)},
+                           {"target_snr", scan.policy.target_snr},
+                           {"max_time_ns", scan.policy.max_time.count()}};
+  }
+  return words;
 }
 json json_of(const PauseScan& verb) {
   return {{"verb", "pause"}, {"scan", verb.scan}, {"now", verb.now}, {"reason", verb.reason}};
 }
 json json_of(const ResumeScan& verb) {
-  return {{"verb", "resume"}, {"scan", verb.scan}};
+  return {{"verb", "resume"}, {"scan", verb.scan}, {"hold", verb.hold ? json(hold_name(*verb.hold)) : json()}};
 }
 json json_of(const FinishScan& verb) {
   return {{"verb", "finish"}, {"scan", verb.scan}};
@@ -65,6 +99,17 @@ json json_of(const HomeStage& /*verb*/) {
 json json_of(const ClearStage& /*verb*/) {
   return {{"verb", "reset"}};
 }
+json json_of(const ChangeScan& verb) {
+  return {{"verb", "change"},
+          {"scan", verb.scan},
+          {"target_snr", or_null(verb.target_snr)},
+          {"max_time_ns", verb.max_time ? json(verb.max_time->count()) : json()},
+          {"order", verb.order ? json(rest_order_name(*verb.order)) : json()},
+          {"seed", verb.seed},
+          {"priority", or_null(verb.priority)},
+          {"start", json_of(verb.start)},
+          {"reason", verb.reason}};
+}
 
 json json_of(const ReadDetector& verb) {
   return {{"verb", "read"},
@@ -77,6 +122,38 @@ template <class T>
 std::optional<T> optional_of(const json& value) {
   if (value.is_null()) return std::nullopt;
   return value.get<T>();
+}
+
+void read_turn(const json& words, NewScan& scan) {
+  scan.turn = {.priority = words.at("priority"),
+               .preempts = words.at("preempts"),
+               .start = start_from(words.at("start")),
+               .completes = words.at("completes")};
+}
+
+PlannedScan points_from(const json& words) {
+  PlannedScan planned{.planner_version = kPlannerVersion};
+  for (const json& one : words) {
+    ScanPoint point{.index = static_cast<std::int32_t>(planned.points.size()), .rank = one.at(0)};
+    point.geometry = {.theta_i = Angle::from_si(one.at(1)),
+                      .phi_i = Angle::from_si(one.at(2)),
+                      .theta_r = Angle::from_si(one.at(3)),
+                      .phi_r = Angle::from_si(one.at(4))};
+    point.wavelength = Wavelength::from_si(one.at(5));
+    point.repeat = one.at(6);
+    planned.points.push_back(point);
+  }
+  planned.order.resize(planned.points.size());
+  for (const ScanPoint& point : planned.points) planned.order.at(static_cast<std::size_t>(point.rank)) = point.index;
+  planned.asked = std::ssize(planned.points);
+  planned.items = 2 * planned.asked;
+  return planned;
+}
+
+void read_completion(const json& words, NewScan& scan) {
+  scan.planned = points_from(words.at("points"));
+  scan.policy.target_snr = words.at("target_snr");
+  scan.policy.max_time = Duration(words.at("max_time_ns").get<std::int64_t>());
 }
 
 Result<Verb> submitted(const json& words, const Instrument& instrument) {
@@ -101,7 +178,26 @@ Result<Verb> submitted(const json& words, const Instrument& instrument) {
   scan.instrument_text = instrument.text;
   scan.instrument_hash = instrument.sha256;
   scan.planned = std::move(*planned);
+  if (words.contains("turn")) read_turn(words.at("turn"), scan);
+  if (words.contains("completion")) read_completion(words.at("completion"), scan);
   return submit;
+}
+
+ChangeScan change_of(const json& words) {
+  ChangeScan change{.scan = words.at("scan"), .seed = words.at("seed"), .reason = words.at("reason")};
+  change.target_snr = optional_of<double>(words.at("target_snr"));
+  if (const auto ns = optional_of<std::int64_t>(words.at("max_time_ns"))) change.max_time = Duration(*ns);
+  if (const auto order = optional_of<std::string>(words.at("order"))) change.order = rest_order_from_name(*order);
+  change.priority = optional_of<int>(words.at("priority"));
+  change.start = start_from(words.at("start"));
+  return change;
+}
+
+ResumeScan resume_of(const json& words) {
+  ResumeScan resume{.scan = words.at("scan")};
+  // Earlier tapes name no hold.
+  if (const auto hold = optional_of<std::string>(words.value("hold", json()))) resume.hold = hold_from_name(*hold);
+  return resume;
 }
 
 MoveStage move_of(const json& words) {
@@ -129,7 +225,8 @@ Result<Verb> verb_of(const json& words, const Instrument& instrument) {
   if (verb == "pause") {
     return PauseScan{.scan = words.at("scan"), .now = words.at("now"), .reason = words.at("reason")};
   }
-  if (verb == "resume") return ResumeScan{.scan = words.at("scan")};
+  if (verb == "resume") return resume_of(words);
+  if (verb == "change") return change_of(words);
   if (verb == "finish") return FinishScan{.scan = words.at("scan")};
   if (verb == "abort") return AbortScan{.scan = words.at("scan"), .reason = words.at("reason")};
   if (verb == "skip") return SkipItemInHand{.scan = words.at("scan")};
@@ -146,6 +243,7 @@ Result<Verb> verb_of(const json& words, const Instrument& instrument) {
 
 Result<SequencerMessage> read_message(const drivers::TapeInput& input, const Instrument& instrument) {
   const json words = json::parse(input.text);
+  if (input.kind == kDisk) return DiskSeen{.free_bytes = words.at("free_bytes")};
   if (input.kind == kStop) return StopHappened{.epoch = words.at("epoch"), .who = words.at("who")};
   Result<Verb> verb = verb_of(words, instrument);
   if (!verb) return failure(std::move(verb).error());
@@ -163,6 +261,9 @@ std::optional<drivers::TapeInput> tape_input_of(const SequencerMessage& message)
   }
   if (const auto* stop = std::get_if<StopHappened>(&message)) {
     return drivers::TapeInput{.kind = kStop, .text = json{{"epoch", stop->epoch}, {"who", stop->who}}.dump()};
+  }
+  if (const auto* disk = std::get_if<DiskSeen>(&message)) {
+    return drivers::TapeInput{.kind = kDisk, .text = json{{"free_bytes", disk->free_bytes}}.dump()};
   }
   return std::nullopt;
 }

@@ -73,10 +73,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 merged, blocked, items, accepted, skipped, attempts, visits,
                                                 reference_visits, check_visits, measured_again, largest_drift, spent,
                                                 seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
-                                                median_relative_u, worst_relative_u, plan, plan_file, plan_parts)
+                                                median_relative_u, worst_relative_u, priority, preempts, start_utc,
+                                                queue_place, completes, completed_by, plan, plan_file, plan_parts)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(WarmUpReport, slope_percent_per_min, limit_percent_per_min, waited_s,
+                                                at_least_s, at_most_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
-                                                stage_stopped, active, queued, stage, stage_error, detector_error,
-                                                store_error, last_event)
+                                                stage_stopped, active, queued, aside, warm_up, stage, stage_error,
+                                                detector_error, store_error, last_event)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HealthReport, ok, version)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanOrder, walk_s, bound_s, bound, as_written_s, snaked_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanReport, name, sample, reference, planner_version, asked, points,
@@ -102,8 +105,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(InstrumentReport, name, sha256, 
                                                 shortest_exposure_s, longest_exposure_s, full_scale_dn, read_noise_dn,
                                                 electrons_per_dn, monitor_low, monitor_high, store_free_bytes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StopReport, epoch)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CommandReport, scan, existed)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanSubmission, plan, plan_file, parts)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CommandReport, scan, existed, note)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanSubmission, plan, plan_file, parts, priority, preempt, start_utc)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(MoveRequest, theta_i_deg, theta_r_deg, phi_r_deg, phi_i_deg,
                                                 carriage_mm, filter_wheel_slot, source_shutter_open,
                                                 detector_shutter_open)
@@ -113,6 +116,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DetectorReading, detector, unit,
                                                 source_shutter_open, detector_shutter_open)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PauseRequest, now, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AbortRequest, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ResumeRequest, hold)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ChangeRequest, target_snr, max_time_s, order, seed, priority, start_utc,
+                                                reason)
 
 void to_json(json& j, const NoWords&) {
   j = json::object();
@@ -243,6 +249,8 @@ GONIO_REQUEST(MoveRequest);
 GONIO_REQUEST(DetectorReadRequest);
 GONIO_REQUEST(PauseRequest);
 GONIO_REQUEST(AbortRequest);
+GONIO_REQUEST(ResumeRequest);
+GONIO_REQUEST(ChangeRequest);
 GONIO_REQUEST(NoWords);
 
 }  // namespace api

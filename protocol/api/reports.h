@@ -105,9 +105,24 @@ struct ScanReport {
   std::optional<std::int64_t> brdf_values;  ///< once computed
   std::optional<double> median_relative_u;  ///< of the expanded uncertainties U (k = 2 or by dof) over the value
   std::optional<double> worst_relative_u;
+  int priority = 0;
+  bool preempts = false;                          ///< runs inside a scan of lower priority
+  std::optional<std::string> start_utc;           ///< not before
+  std::optional<std::int64_t> queue_place;        ///< while queued: 1 is next, were all allowed to start
+  std::int64_t completes = 0;                     ///< the scan whose missing points these are; 0: none
+  std::int64_t completed_by = 0;                  ///< the newest scan made of its missing points; 0: none
   std::optional<std::string> plan;                ///< as it was sent; of one scan asked for, not in lists
   std::optional<std::string> plan_file;           ///< the user's name for it; likewise
   std::map<std::string, std::string> plan_parts;  ///< the files that the plan names, by name; likewise
+};
+
+/// A scan waits for the lamp to be warm.
+struct WarmUpReport {
+  std::optional<double> slope_percent_per_min;  ///< of the lamp's monitor; none: not seen for long enough
+  double limit_percent_per_min = 0.0;
+  double waited_s = 0.0;
+  double at_least_s = 0.0;  ///< still to be looked at before it can be judged
+  double at_most_s = 0.0;   ///< until the scan holds
 };
 
 struct StatusReport {
@@ -118,7 +133,9 @@ struct StatusReport {
   std::string doing;
   bool stage_stopped = false;
   std::optional<ScanReport> active;
-  std::vector<std::int64_t> queued;
+  std::vector<std::int64_t> queued;  ///< in the order of their turns
+  std::vector<std::int64_t> aside;   ///< pre-empted: they go on when the active one is over
+  std::optional<WarmUpReport> warm_up;
   std::optional<StageReport> stage;  ///< none before the first answer of the stage
   std::optional<Error> stage_error;
   std::optional<Error> detector_error;
@@ -240,6 +257,7 @@ struct StopReport {
 struct CommandReport {
   std::int64_t scan = 0;  ///< concerned; 0: the stage
   bool existed = false;   ///< submission: this idempotency key was known; `scan` is the one it made then
+  std::string note;       ///< what is to be known besides: holds that are left, the item skipped
 };
 
 }  // namespace gonio::api

@@ -1,6 +1,7 @@
 #pragma once
 
 // What clients ask for, as values; the JSON bodies have the same names (json.h).
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@ struct PlanSubmission {
   std::string plan;                          ///< TOML, verbatim
   std::string plan_file;                     ///< the user's name for it, shown in errors
   std::map<std::string, std::string> parts;  ///< name -> text
+  int priority = 0;                          ///< -100 to 100; higher ones run first
+  bool preempt = false;   ///< runs inside a scan of lower priority, which holds meanwhile and goes on by itself
+  std::string start_utc;  ///< not before, as "2026-11-22T18:05Z"; empty: as soon as its turn has come
 };
 
 /// Where to move by hand; what is absent stays.
@@ -35,6 +39,21 @@ struct DetectorReadRequest {
 
 struct PauseRequest {
   bool now = false;  ///< true drops the item in hand
+  std::string reason;
+};
+
+struct ResumeRequest {
+  std::string hold;  ///< just this one; empty: all whose cause is not seen to stand
+};
+
+/// What is to change in the rest of a scan; what is absent stays.
+struct ChangeRequest {
+  std::optional<double> target_snr;
+  std::optional<double> max_time_s;  ///< of one reading
+  std::optional<std::string> order;  ///< of the points not begun: "as-written", "reversed", "random"
+  std::int64_t seed = 1;             ///< of "random"
+  std::optional<int> priority;
+  std::optional<std::string> start_utc;  ///< of a queued scan
   std::string reason;
 };
 

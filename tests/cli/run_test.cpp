@@ -155,7 +155,28 @@ TEST_F(Gonioctl, ScanVerbsReachTheirScan) {
   EXPECT_EQ(run({"scan", "abort", "3"}), 0);
 
   EXPECT_THAT(service_.asked(),
-              ElementsAre("change 3 verb 1 lunch local", "change 3 verb 2  local", "change 3 verb 4  local"));
+              ElementsAre("change 3 verb 1 lunch local", "resume 3 [] local", "change 3 verb 3  local"));
+}
+
+TEST_F(Gonioctl, ResumeOfOneHoldNamesItAndShowsWhatIsLeft) {
+  EXPECT_EQ(run({"scan", "resume", "3", "--hold", "operator"}), 0);
+
+  EXPECT_THAT(service_.asked(), ElementsAre("resume 3 [operator] local"));
+  EXPECT_THAT(out_.str(), HasSubstr("still held: lamp (stage: it is out)"));
+  EXPECT_EQ(run({"scan", "resume", "3", "--hold", "mood"}), 2);
+}
+
+TEST_F(Gonioctl, TheRestOfAScanIsChangedByWhatIsNamedOnly) {
+  EXPECT_EQ(run({"scan", "change", "3", "--snr", "50", "--order", "reversed", "--reason", "hurry"}), 0);
+  EXPECT_EQ(run({"scan", "complete-missing", "3"}), 0);
+
+  const auto asked = service_.asked();
+  ASSERT_EQ(asked.size(), 2U);
+  EXPECT_THAT(asked[0], HasSubstr("\"target_snr\":50.0"));
+  EXPECT_THAT(asked[0], HasSubstr("\"order\":\"reversed\""));
+  EXPECT_THAT(asked[0], HasSubstr("\"max_time_s\":null"));
+  EXPECT_EQ(asked[1], "complete missing 3 local");
+  EXPECT_THAT(out_.str(), HasSubstr("4"));
 }
 
 TEST_F(Gonioctl, AnExportIsThereWholeAndNothingBesideIt) {

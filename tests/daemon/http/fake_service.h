@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/http/service.h"
+#include "protocol/api/json.h"
 
 namespace gonio::test {
 
@@ -55,6 +56,21 @@ class FakeService final : public daemon::Service {
     note("change " + std::to_string(scan) + " verb " + std::to_string(static_cast<int>(verb)) + " " + reason + " " +
          who);
     reply(api::CommandReport{.scan = scan});
+  }
+
+  void resume_scan(std::int64_t scan, const api::ResumeRequest& request, const std::string& who,
+                   daemon::Reply<api::CommandReport> reply) override {
+    note("resume " + std::to_string(scan) + " [" + request.hold + "] " + who);
+    reply(api::CommandReport{.scan = scan, .note = "still held: lamp (stage: it is out)"});
+  }
+  void change_rest(std::int64_t scan, const api::ChangeRequest& request, const std::string& who,
+                   daemon::Reply<api::CommandReport> reply) override {
+    note("change rest " + std::to_string(scan) + " " + api::to_json(request) + " " + who);
+    reply(api::CommandReport{.scan = scan});
+  }
+  void complete_missing(std::int64_t scan, const std::string& who, daemon::Reply<api::CommandReport> reply) override {
+    note("complete missing " + std::to_string(scan) + " " + who);
+    reply(api::CommandReport{.scan = scan + 1});
   }
 
   Result<api::StatusReport> status() override {

@@ -192,7 +192,7 @@ TEST_F(ServerTest, PassesOnWhatCommandsSay) {
 
   EXPECT_EQ(api::report_from_json<api::CommandReport>(submitted.body)->scan, 3);
   EXPECT_THAT(service_.asked(),
-              ElementsAre("submit w.toml [text] key=k1 local", "change 3 verb 1 lamp local", "change 3 verb 3  local"));
+              ElementsAre("submit w.toml [text] key=k1 local", "change 3 verb 1 lamp local", "change 3 verb 2  local"));
 }
 
 TEST_F(ServerTest, PagesAreAskedForByTheQuery) {

@@ -127,6 +127,21 @@ void ScanRig::stop() {
   collect();
 }
 
+void ScanRig::watch_for(Duration time) {
+  const Instant end = clock_.now() + time;
+  while (clock_.now() < end) {
+    const Instant next = clock_.now() + std::chrono::seconds(1);
+    after(std::chrono::seconds(1),
+          [this] { sequencer_->on(StageAnswer{.ticket = kWatchTicket, .state = look()}, clock_.now()); });
+    run_until([&] { return clock_.now() >= next; });
+  }
+}
+
+void ScanRig::tell_disk(std::int64_t free_bytes) {
+  sequencer_->on(DiskSeen{.free_bytes = free_bytes}, clock_.now());
+  collect();
+}
+
 ScanInfo ScanRig::info(ScanId id) {
   auto reader = StoreReader::open(path_);
   if (!reader) return {};
@@ -144,7 +159,24 @@ std::int64_t ScanRig::count(const std::string& query) {
 
 // ---- the other side ----
 
+namespace {
+
+// In the order of the variants.
+std::string name_of(const Request& request) {
+  constexpr std::array<const char*, 5> kStage{"move", "home", "reset", "look", "gate"};
+  constexpr std::array<const char*, 3> kDetector{"frame", "prepare", "zero"};
+  constexpr std::array<const char*, 2> kMonitor{"monitor", "prepare monitor"};
+  constexpr std::array<const char*, 2> kStore{"commit", "load"};
+  if (const auto* to_stage = std::get_if<StageRequest>(&request)) return kStage[to_stage->index()];
+  if (const auto* to_detector = std::get_if<DetectorRequest>(&request)) return kDetector[to_detector->index()];
+  if (const auto* to_monitor = std::get_if<MonitorRequest>(&request)) return kMonitor[to_monitor->index()];
+  return kStore[std::get<StoreRequest>(request).index()];
+}
+
+}  // namespace
+
 void ScanRig::execute(const Request& request) {
+  asked = name_of(request);
   if (const auto* to_stage = std::get_if<StageRequest>(&request)) return execute_stage(*to_stage);
   if (const auto* to_detector = std::get_if<DetectorRequest>(&request)) return execute_detector(*to_detector);
   if (const auto* to_monitor = std::get_if<MonitorRequest>(&request)) return execute_monitor(*to_monitor);
@@ -172,6 +204,7 @@ void ScanRig::execute_store(const StoreRequest& request) {
 drivers::StageState ScanRig::look() {
   world.stage.at = clock_.now();
   for (auto& axis : world.stage.axes) axis.counts = static_cast<std::int32_t>(std::lround(axis.position * 10'000.0));
+  world.stage.monitor = world.monitor;
   world.stage.moving = clock_.now() < world.moving_until;
   world.stage.gate.open = clock_.now() < world.gate_open_until;
   return world.stage;

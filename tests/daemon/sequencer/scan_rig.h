@@ -71,6 +71,7 @@ class ScanRig {
   std::vector<EventRecord> events;                   ///< as published: in order
   std::function<void(const EventRecord&)> on_event;  ///< if set, events go there and are not kept
   bool refuse_commits = false;                       ///< DiskFull for all that follow
+  std::string asked;  ///< what was asked for last, of whomever: "move", "look", "frame", "commit"
 
   /// One step; false when nothing is left to do.
   bool step();
@@ -91,6 +92,9 @@ class ScanRig {
   ScanId submit(const api::Plan& plan);
   /// STOP as the halt path does it: the stage first, then the word.
   void stop();
+  /// Others look at the stage once a second, for so long.
+  void watch_for(Duration time);
+  void tell_disk(std::int64_t free_bytes);
 
   [[nodiscard]] SequencerStatus status() const { return sequencer_->status(clock_.now()); }
   [[nodiscard]] ScanState state_of(ScanId id);

@@ -32,6 +32,8 @@ void check_report(std::string_view text) {
 
 void check_bodies(std::string_view text) {
   check_request<api::PlanSubmission>(text);
+  check_request<api::ResumeRequest>(text);
+  check_request<api::ChangeRequest>(text);
   check_request<api::MoveRequest>(text);
   check_request<api::PauseRequest>(text);
   check_request<api::NoWords>(text);

@@ -109,6 +109,8 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<StopReport>(document, "StopReport");
   expect_schema<CommandReport>(document, "CommandReport");
   expect_schema<PlanSubmission>(document, "PlanSubmission");
+  expect_schema<ResumeRequest>(document, "ResumeRequest");
+  expect_schema<ChangeRequest>(document, "ChangeRequest");
   expect_schema<MoveRequest>(document, "MoveRequest");
   expect_schema<DetectorReadRequest>(document, "DetectorReadRequest");
   expect_schema<DetectorReading>(document, "DetectorReading");
