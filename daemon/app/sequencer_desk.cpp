@@ -23,9 +23,7 @@ SequencerDesk::SequencerDesk(SequencerConfig config, Ports ports, Instant now)
     : ports_(std::move(ports)), sequencer_(std::move(config), now), next_look_(now) {}
 
 void SequencerDesk::on(const SequencerMessage& message, Instant now) {
-  if (const auto* answer = std::get_if<StageAnswer>(&message)) {
-    next_look_ = now + ports_.look_every;
-  }
+  if (std::holds_alternative<StageAnswer>(message)) next_look_ = now + ports_.look_every;
   sequencer_.on(message, now);
   hand_on(now);
 }
