@@ -31,7 +31,7 @@ std::string flat_standard() {
 class Completion : public testing::Test {
  protected:
   Completion() {
-    test::write_text(standards_ / "a.toml", flat_standard());
+    gonio::test::write_text(standards_ / "a.toml", flat_standard());
     shelf_ = std::make_unique<ReferenceShelf>(standards_.path());
     writer_ = std::move(StoreWriter::open({.path = path_, .boot_id = "boot", .version = "test"}, clock_)).value();
     reader_ = std::move(StoreReader::open(path_)).value();
@@ -61,7 +61,7 @@ class Completion : public testing::Test {
     return completion_of(*reader_, scan, test::bench_instrument(), *shelf_, day, "uid:7");
   }
 
-  test::TemporaryFolder standards_;
+  gonio::test::TemporaryFolder standards_;
   test::ScratchFolder folder_;
   std::string path_ = folder_.file("store.sqlite");
   ManualClock clock_;
