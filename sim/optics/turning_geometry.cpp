@@ -34,13 +34,13 @@ constexpr std::size_t kY = 1;
 constexpr std::size_t kZ = 2;
 constexpr Quaternion kAlongX{0.0, 1.0, 0.0, 0.0};
 
-struct Direction {
+struct SampleDirection {
   Angle theta;
   Angle phi;
 };
 
 // Of a laboratory direction that comes from x by `from_x`, seen from a sample that is turned by `sample`.
-Direction seen_from(const Quaternion& sample, const Quaternion& from_x) {
+SampleDirection seen_from(const Quaternion& sample, const Quaternion& from_x) {
   const Quaternion turn = conjugate(sample) * from_x;
   const Quaternion v = turn * kAlongX * conjugate(turn);
   return {radians(std::atan2(std::sqrt(v.y * v.y + v.z * v.z), v.x)), radians(std::atan2(v.z, v.y))};
@@ -50,9 +50,9 @@ Direction seen_from(const Quaternion& sample, const Quaternion& from_x) {
 
 Geometry directions_on(const TurningSampleSpec& sample, const SampleTurn& turn) {
   const Quaternion stands = turn_about(kZ, turn.yaw) * turn_about(kY, turn.pitch) * turn_about(kX, turn.roll);
-  const Direction source =
+  const SampleDirection source =
       seen_from(stands, turn_about(kZ, sample.source_azimuth) * turn_about(kY, -sample.source_elevation));
-  const Direction detector =
+  const SampleDirection detector =
       seen_from(stands, turn_about(kX, sample.detector_plane_tilt) * turn_about(kZ, turn.detector_arm));
   return {.theta_i = source.theta, .phi_i = source.phi, .theta_r = detector.theta, .phi_r = detector.phi};
 }
