@@ -98,7 +98,7 @@ struct CommandDone {
   ScanId scan = 0;
   bool existed = false;  ///< SubmitScan: the idempotency key was known; `scan` is the one it made then
   std::optional<HandReading> reading = std::nullopt;  ///< of ReadDetector
-  std::string note{};    ///< what is to be known besides: holds that are left, the item skipped
+  std::string note{};  ///< what is to be known besides: holds that are left, the item skipped
 };
 struct CommandReply {
   CommandId id = 0;
