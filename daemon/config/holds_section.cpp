@@ -16,7 +16,7 @@ std::optional<Duration> time_without_cause(TomlReader& table, std::string_view k
   return seconds(*given);
 }
 
-std::int64_t bytes(double mebibytes) {
+std::int64_t bytes_of(double mebibytes) {
   return std::llround(mebibytes * kMebibyte);
 }
 
@@ -31,9 +31,9 @@ HoldRules read_holds(TomlReader& root) {
   rules.device = time_without_cause(*table, "device_s");
   rules.disk = time_without_cause(*table, "disk_s");
   const double least = table->number_or("disk_least_mib", kLeastMebibytes, {.least = 1.0, .unit = "MiB"});
-  rules.disk_least_bytes = bytes(least);
+  rules.disk_least_bytes = bytes_of(least);
   rules.disk_again_bytes =
-      bytes(table->number_or("disk_again_mib", kAgainOverLeast * least, {.least = least, .unit = "MiB"}));
+      bytes_of(table->number_or("disk_again_mib", kAgainOverLeast * least, {.least = least, .unit = "MiB"}));
   return rules;
 }
 

@@ -6,6 +6,7 @@
 
 #include "daemon/sequencer/scan_events.h"
 #include "daemon/sequencer/sequencer_impl.h"
+#include "daemon/sequencer/visit_schedule.h"
 
 namespace gonio::daemon {
 
@@ -78,7 +79,7 @@ void Sequencer::Impl::return_from_aside(Instant now) {
   end_holds(*scan, {HoldName::Preempted}, kDaemon, "the scan that ran first is over", now, std::nullopt);
 }
 
-// A more urgent scan waits. At a point boundary: what the reference owes is measured and the dark taken first, so that
+// A more urgent scan waits. At a point boundary: what the reference owes is measured and the visits made first, so that
 // nothing of this scan waits half done. True when it holds from now on.
 bool Sequencer::Impl::makes_way(Instant now) {
   if (scan->state != ScanState::Running || scan->finish_asked) return false;
@@ -92,8 +93,9 @@ bool Sequencer::Impl::makes_way(Instant now) {
     scan->items.close_block();
     return false;
   }
-  if (scan->dark_owed) {
-    start_dark(now);
+  const NextJob owed = next_closing_job(visit_clocks());
+  if (owed != NextJob::Nothing) {
+    owed == NextJob::Dark ? start_dark(now) : start_visit(owed, now);
     return false;
   }
   add_hold(HoldName::Preempted, kDaemon,

@@ -6,12 +6,11 @@
 namespace gonio::daemon {
 namespace {
 
-using std::chrono::seconds;
 using testing::HasSubstr;
 
 class HoldWatchTest : public testing::Test {
  protected:
-  static Instant at(int s) { return Instant(seconds(s)); }
+  static Instant at(int s) { return Instant(std::chrono::seconds(s)); }
   void look(int s, bool door_open, double monitor = 1.0) {
     drivers::StageState state;
     state.interlock_open = door_open;
@@ -21,8 +20,11 @@ class HoldWatchTest : public testing::Test {
   }
   static Hold hold(HoldName name, int since_s) { return {.name = name, .owner = "stage", .since = at(since_s)}; }
 
-  HoldRules rules{
-      .lamp = seconds(60), .door = seconds(10), .disk = seconds(5), .disk_least_bytes = 1000, .disk_again_bytes = 1500};
+  HoldRules rules{.lamp = std::chrono::seconds(60),
+                  .door = std::chrono::seconds(10),
+                  .disk = std::chrono::seconds(5),
+                  .disk_least_bytes = 1000,
+                  .disk_again_bytes = 1500};
   HoldWatch watch{rules, LampBand{.low = 0.2, .high = 5.0}, false};
 };
 

@@ -9,7 +9,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using std::chrono::seconds;
 
 constexpr double kPercentPerMinute = 0.01 / 60.0;
 
@@ -38,7 +37,7 @@ TEST_F(LampWatchTest, IsWarmWhenItsSlopeOverTheTimeAskedForIsBelowTheLimit) {
 TEST_F(LampWatchTest, IsNotWarmBeforeItWasSeenForTheWholeTime) {
   for (int t = 0; t <= 295; t += 5) lamp.see(1.0, at(t));
   EXPECT_FALSE(lamp.is_warm(at(299)));
-  EXPECT_EQ(lamp.still_to_see(at(299)), seconds(5));
+  EXPECT_EQ(lamp.still_to_see(at(299)), std::chrono::seconds(5));
 
   lamp.see(1.0, at(300));
   EXPECT_TRUE(lamp.is_warm(at(300)));

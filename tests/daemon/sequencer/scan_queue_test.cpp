@@ -11,7 +11,6 @@ namespace {
 
 using std::chrono::hours;
 using std::chrono::minutes;
-using std::chrono::seconds;
 using test::ScanRig;
 using testing::HasSubstr;
 
@@ -233,7 +232,7 @@ TEST_F(ScanTurns, ALongerTimeBringsLongerExposuresWithADarkBeforeThem) {
   const ScanId id = answer(SubmitScan{std::move(scan)})->scan;
   until_item();
 
-  ASSERT_TRUE(answer(ChangeScan{.scan = id, .max_time = seconds(2)}));
+  ASSERT_TRUE(answer(ChangeScan{.scan = id, .max_time = std::chrono::seconds(2)}));
   rig.run_to_rest();
 
   EXPECT_EQ(rig.state_of(id), ScanState::Done);
@@ -260,7 +259,8 @@ TEST_F(ScanTurns, AnExposureInUseCannotBeTakenAway) {
 
 Instrument with_rules() {
   Instrument instrument = test::bench_instrument();
-  instrument.holds = {.lamp = seconds(30), .door = seconds(10), .disk = seconds(5)};
+  instrument.holds = {
+      .lamp = std::chrono::seconds(30), .door = std::chrono::seconds(10), .disk = std::chrono::seconds(5)};
   instrument.lamp.before_shutter = true;
   return instrument;
 }
@@ -275,13 +275,13 @@ TEST_F(ScanTurnsWithRules, AHoldEndsByItselfWhenItsCauseWasGoneForLongEnough) {
   until_item();
   rig.world.stage.interlock_open = true;
   rig.run_to_rest();
-  rig.watch_for(seconds(60));
+  rig.watch_for(std::chrono::seconds(60));
   EXPECT_EQ(rig.state_of(id), ScanState::Holding);
 
   rig.world.stage.interlock_open = false;
-  rig.watch_for(seconds(9));
+  rig.watch_for(std::chrono::seconds(9));
   EXPECT_EQ(rig.state_of(id), ScanState::Holding);
-  rig.watch_for(seconds(3));
+  rig.watch_for(std::chrono::seconds(3));
   rig.run_to_rest();
 
   EXPECT_EQ(rig.state_of(id), ScanState::Done);
@@ -296,7 +296,7 @@ TEST_F(ScanTurnsWithRules, TwoHoldsEndOnlyWhenBothAreGone) {
   ASSERT_TRUE(answer(PauseScan{.scan = id}));
   rig.world.stage.interlock_open = false;
 
-  rig.watch_for(seconds(20));
+  rig.watch_for(std::chrono::seconds(20));
   EXPECT_EQ(holds(), std::vector<HoldName>{HoldName::Operator});
   EXPECT_EQ(rig.state_of(id), ScanState::Holding);
   ASSERT_TRUE(answer(ResumeScan{.scan = id}));
@@ -312,8 +312,8 @@ TEST_F(ScanTurnsWithRules, ALampThatComesAndGoesEndsItsHoldABoundedNumberOfTimes
   rig.run_to_rest();
   for (int round = 0; round < 15; ++round) {
     rig.world.monitor = 1.0;
-    rig.watch_for(seconds(31));  // the hold may end now ...
-    rig.world.monitor = 0.01;    // ... and the lamp goes out before an item is measured
+    rig.watch_for(std::chrono::seconds(31));  // the hold may end now ...
+    rig.world.monitor = 0.01;                 // ... and the lamp goes out before an item is measured
     rig.run_to_rest();
   }
 
