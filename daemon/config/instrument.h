@@ -63,7 +63,7 @@ struct ConeAngles {
 struct LampBand {
   double low = 0.0;
   double high = 0.0;
-  double least_scatter = 0.0;  ///< relative, of one sample: a monitor that scatters less is stuck; 0: not looked at
+  double least_scatter = 0.0;   ///< relative, of one sample: a monitor that scatters less is stuck; 0: not looked at
   bool before_shutter = false;  ///< the monitor sees the lamp also while the source's shutter is closed
   std::optional<LampWarmUp> warm_up;
 };
