@@ -33,7 +33,7 @@ Error not_now(ScanId scan, ScanState state, bool is_aside, ScanAsk ask, const st
                .device = "sequencer",
                .tried = fmt::format("{} scan {}", scan_ask_name(ask), scan),
                .seen = seen.empty() ? fmt::format("it is {}", word) : fmt::format("it is {}: {}", word, seen),
-               .limit = fmt::format("allowed now: {}", allowed)};
+               .limit = fmt::format("allowed now: {}", allowed.empty() ? "nothing else" : allowed)};
 }
 
 namespace {
