@@ -25,6 +25,7 @@ struct FaultRow {
   std::string_view hold;                ///< the hold's name
   std::string_view says;                ///< what stands in the attempt's error, the skip's reason or the hold's
   std::string_view instrument = "tcp";  ///< or "rtu", "drives" (on TCP), "usb" (TCP and two radiometers)
+  std::string_view or_says = "";        ///< of a hold, where what is seen first is a race: the other word
 };
 
 /// The operators' table in docs/faults.md has a row for each.
@@ -60,7 +61,8 @@ inline constexpr std::array kFaultRows{
     FaultRow{"FrameStale", "frame-stale", R"("after":1)", FaultOutcome::Retried, "", "frame"},
     FaultRow{"PacketsLost", "packets-lost", R"("after":1)", FaultOutcome::Unnoticed, "", ""},
     FaultRow{"PacketsGone", "packets-gone", R"("after":1)", FaultOutcome::Retried, "", "packets missing"},
-    FaultRow{"CameraSilent", "camera-silent", R"("after":1)", FaultOutcome::Held, "device", "control-lost"},
+    FaultRow{"CameraSilent", "camera-silent", R"("after":1)", FaultOutcome::Held, "device", "control-lost", "tcp",
+             "unreachable"},
     FaultRow{"ControlTaken", "control-taken", R"("after":1)", FaultOutcome::Held, "device", "control-lost"},
     FaultRow{"LampStepInsideTheBand", "lamp-step", R"("after":1,"by_percent":30)", FaultOutcome::Unnoticed, "", ""},
     FaultRow{"LampStepOutOfTheBand", "lamp-step", R"("after":1,"by_percent":-90)", FaultOutcome::Held, "lamp",
