@@ -14,6 +14,12 @@ namespace gonio::calibration {
 /// 100:2008, 5.2: the correlation that a sum over points must keep).
 enum class ComponentKind : std::uint8_t { Random, Shared };
 
+/// What is known of how an error is distributed. Rectangular: a stated bound, u = half width / sqrt(3).
+enum class Distribution : std::uint8_t { Normal, Rectangular };
+
+/// How a budget was made.
+enum class BudgetMethod : std::uint8_t { Formula, MonteCarlo };
+
 /// One source of uncertainty of a scan.
 struct Component {
   std::string name;  ///< "certificate", "zero theta_i", "dark visit 12 at 0.064 s"
@@ -21,6 +27,10 @@ struct Component {
   double u = 0.0;    ///< k = 1, in `unit`; 0 when it differs from point to point
   std::string unit;  ///< "1" when relative
   double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of u
+  Distribution distribution = Distribution::Normal;
+  /// What the error belongs to: components of two scans with the same name and owner are one error. Empty: this scan
+  /// alone has it.
+  std::string owner;
 };
 
 /// What one standard deviation of a component does to a value. Absolute, in sr^-1, for the value may be 0 or negative.
@@ -40,6 +50,11 @@ struct Budget {
   double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< effective, Welch-Satterthwaite
   double k = 0.0;                                                       ///< for a level of confidence of 95.45 %
   Brdf expanded;                                                        ///< U = k u_c
+  BudgetMethod method = BudgetMethod::Formula;
+  /// The 95.45 % interval is [value - below, value + above]. By formula both are U; by Monte Carlo it is the interval
+  /// with as much beyond either end, U the larger of both, u the standard deviation, k = U / u.
+  Brdf below;
+  Brdf above;
 };
 
 /// Sorts the terms, merges those of one component (random: root sum of squares; shared: signed sum), leaves out those

@@ -224,6 +224,20 @@ std::string_view flag_name(PointFlag flag) {
       return "uncertain-divisor";
     case PointFlag::Drifted:
       return "drifted";
+    case PointFlag::InstrumentLimited:
+      return "instrument-limited";
+    case PointFlag::MonteCarlo:
+      return "monte-carlo";
+    case PointFlag::FewRepeats:
+      return "few-repeats";
+    case PointFlag::Mixed:
+      return "mixed";
+    case PointFlag::ReferenceExtrapolated:
+      return "reference-extrapolated";
+    case PointFlag::Blocked:
+      return "blocked";
+    case PointFlag::Saturated:
+      return "saturated";
   }
   return "";
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -7,6 +8,7 @@
 #include "base/result.h"
 #include "calibration/calibrated_scan.h"
 #include "calibration/instrument_model.h"
+#include "calibration/left_out.h"
 #include "calibration/raw_reading.h"
 #include "calibration/reference_standard.h"
 
@@ -15,9 +17,20 @@ namespace gonio::calibration {
 /// The rules of this room, as one number: grows whenever the same inputs would give other values.
 inline constexpr std::string_view kCalibrationCode = "gonio-calibration-1";
 
-/// What a calibration may leave undone.
+/// When budgets are made by Monte Carlo.
+enum class MonteCarloUse : std::uint8_t {
+  WhereNeeded,  ///< where the formula does not hold (monte_carlo.h)
+  Never,
+  Always,
+};
+
+/// How a calibration is made.
 struct CalibrationOptions {
   bool correct_drift = true;  ///< false: visits of the standard count for nothing
+  MonteCarloUse monte_carlo = MonteCarloUse::WhereNeeded;
+  std::uint64_t seed = 1;  ///< of Monte Carlo: each point has its own stream
+  int threads = 0;         ///< at most; 0: as many as the machine has. The result has the same bits
+  LeftOut left_out;
 };
 
 /// Readings to BRDF by the ratio to the reference at the same geometry and wavelength:

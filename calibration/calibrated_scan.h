@@ -20,6 +20,13 @@ enum class PointFlag : std::uint32_t {
   UncertainDivisor =
       1U << 4U,        ///< relative u of the reference's reading above 5 %: U by linear propagation is too small
   Drifted = 1U << 5U,  ///< read between two visits of the standard that differ by more than the plan's limit
+  InstrumentLimited = 1U << 6U,  ///< f_r bends within the cones of source and detector: a lobe about as narrow as they
+  MonteCarlo = 1U << 7U,         ///< u and U by Monte Carlo (JCGM 101), for the formula does not hold
+  FewRepeats = 1U << 8U,         ///< fewer than 10 effective degrees of freedom: k is Student's
+  Mixed = 1U << 9U,              ///< neither spot nor field of view holds the other: by the overlap of both
+  ReferenceExtrapolated = 1U << 10U,  ///< beyond the shape table's or the certificate's last entry
+  Blocked = 1U << 11U,                ///< one arm's head stands in the other's light
+  Saturated = 1U << 12U,              ///< some exposures of the reading were saturated and left out
 };
 [[nodiscard]] std::string_view flag_name(PointFlag flag);
 [[nodiscard]] constexpr bool has(std::uint32_t flags, PointFlag flag) {

@@ -10,8 +10,19 @@
 
 namespace gonio::calibration {
 
-/// What stood in the detector's view.
-enum class Target : std::uint8_t { Sample, Reference, Dark };
+/// What stood in the detector's view. Dark: its own shutter. Ambient: the source's shutter closed, whatever target.
+/// Trap: the lamp on a black trap. Never renumbered.
+enum class Target : std::uint8_t { Sample, Reference, Dark, Ambient, Trap };
+
+/// The linear polarisation of the light that falls on the target. Any: as the lamp gives it.
+enum class Polarisation : std::uint8_t { Any, S, P };
+
+/// What a sample's reading is compared with.
+enum class ReferenceMode : std::uint8_t {
+  SameGeometry,  ///< the standard at the same directions
+  Anchor,        ///< the standard at one geometry, and a factor for the geometry
+  Absolute,      ///< the direct beam and the detector's solid angle
+};
 
 /// Pixel statistics of one frame inside the aperture mask, in DN, before dark and flat: what the wire said, condensed.
 struct RegionMoments {
@@ -61,6 +72,8 @@ struct RawReading {
   std::int64_t visit_id = 0;  ///< which visit or attempt it belongs to: readings of one visit share its noise
   Wavelength wavelength;
   Instant at{};  ///< middle of the exposures
+  /// Readings are cleared of the ambient and stray light of visits in their own class of geometries.
+  std::int32_t light_class = 0;
   std::vector<RawFrame> frames;
 };
 
@@ -69,11 +82,13 @@ struct PlannedPoint {
   std::int32_t index = 0;
   Geometry geometry;
   Wavelength wavelength;
+  Polarisation polarisation = Polarisation::Any;
 };
 
 /// Everything of one scan that its BRDF depends on, but for the calibration itself.
 struct ScanReadings {
   bool isotropic = true;
+  ReferenceMode reference_mode = ReferenceMode::SameGeometry;
   std::vector<PlannedPoint> points;
   std::optional<double> drift_limit;  ///< of the plan, relative: readings between two visits beyond it are flagged
   std::vector<RawReading> readings;   ///< accepted attempts and all visits, in time order
