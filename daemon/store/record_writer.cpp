@@ -6,6 +6,7 @@
 #include "daemon/config/configuration_hash.h"
 #include "daemon/store/exposure_list.h"
 #include "daemon/store/policy_names.h"
+#include "daemon/store/version_list.h"
 
 namespace gonio::daemon {
 
@@ -281,13 +282,14 @@ void RecordWriter::write_power(std::int64_t reading, const char* role, const Pow
 void RecordWriter::operator()(const NewBrdf& brdf) {
   database_
       .statement(
-          "INSERT INTO calibration(scan_id, code_version, inputs_json, component_names_json, utc_ns) "
-          "VALUES (?,?,?,?,?)")
+          "INSERT INTO calibration(scan_id, code_version, inputs_json, component_names_json, utc_ns, versions) "
+          "VALUES (?,?,?,?,?,?)")
       .bind(brdf.scan)
       .bind(brdf.code_version)
       .bind(brdf.inputs_json)
       .bind(nlohmann::json(brdf.component_names).dump())
       .bind(time_.utc_ns)
+      .bind(version_list_text(brdf.versions))
       .run();
   const std::int64_t calibration = database_.last_id();
   Statement& insert = database_.statement("INSERT INTO brdf VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");

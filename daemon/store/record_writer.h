@@ -33,6 +33,8 @@ class RecordWriter {
   void operator()(const NewBrdf& brdf);
   void operator()(const AuditEntry& entry);
   void operator()(const ScanChange& change);
+  void operator()(const NewFoundCalibration& found);
+  void operator()(const UseCalibrationVersion& use);
   /// An event's own number is the caller's: gapless.
   [[nodiscard]] EventRecord write_event(const NewEvent& event, std::int64_t number);
 

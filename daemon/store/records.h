@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "calibration/jobs/found_values.h"
 #include "calibration/raw_reading.h"
 #include "daemon/planner/planned_scan.h"
 #include "drivers/detector.h"
@@ -19,7 +20,8 @@
 
 namespace gonio::daemon {
 
-using ScanId = std::int64_t;  ///< > 0
+using ScanId = std::int64_t;              ///< > 0
+using CalibrationVersion = std::int64_t;  ///< > 0: of what a calibration job found
 
 /// The life of a scan (DESIGN 5). Names as stored and shown: "queued", "finished-early".
 enum class ScanState : std::uint8_t {
@@ -248,6 +250,22 @@ struct NewBrdf {
   std::string inputs_json;                   ///< certificate, models: what it was computed from
   std::vector<std::string> component_names;  ///< of `sensitivities_per_sr`
   std::vector<BrdfRow> rows;
+  std::vector<CalibrationVersion> versions{};  ///< that it was computed with, ascending; empty: instrument.toml alone
+};
+/// What a calibration job has found: it becomes a version, and counts for nothing before it is used.
+struct NewFoundCalibration {
+  ScanId scan = 0;  ///< the job's
+  std::string job;  ///< "linearity"
+  std::string code_version;
+  std::string inputs_json;
+  calibration::FoundValues found;
+};
+/// From now on this version of its job counts, or none of that job does.
+struct UseCalibrationVersion {
+  CalibrationVersion version = 0;
+  bool in_use = true;
+  std::string who;
+  std::string reason;
 };
 /// Who changed what.
 struct AuditEntry {
@@ -257,7 +275,7 @@ struct AuditEntry {
 };
 
 using StoreWrite = std::variant<NewScan, ScanTransition, AddHold, ClearHolds, NewAttempt, SkipItem, NewVisit, NewBrdf,
-                                AuditEntry, ScanChange>;
+                                AuditEntry, ScanChange, NewFoundCalibration, UseCalibrationVersion>;
 
 /// What clients are told, once it is durable.
 struct NewEvent {

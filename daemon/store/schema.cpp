@@ -363,8 +363,42 @@ CREATE TABLE plan_part(
 ALTER TABLE point ADD COLUMN repeat INTEGER NOT NULL DEFAULT 1;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4,
-                                                              kVersion5, kVersion6, kVersion7, kVersion8};
+// Version 9: what calibration jobs found, each a version for good; which of them counts, as a history; and by which ones
+// a BRDF was computed (numbers separated by blanks, empty: by instrument.toml alone).
+constexpr const char* kVersion9 = R"sql(
+CREATE TABLE found_calibration(
+  version INTEGER PRIMARY KEY AUTOINCREMENT,
+  scan_id INTEGER NOT NULL REFERENCES scan,
+  job TEXT NOT NULL,
+  code_version TEXT NOT NULL,
+  inputs_json TEXT NOT NULL,
+  covariance BLOB NOT NULL,
+  note TEXT NOT NULL,
+  utc_ns INTEGER NOT NULL
+) STRICT;
+CREATE INDEX found_calibration_by_scan ON found_calibration(scan_id);
+CREATE TABLE found_value(
+  version INTEGER NOT NULL REFERENCES found_calibration,
+  place INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  value REAL NOT NULL,
+  PRIMARY KEY (version, place)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE calibration_use(
+  use_id INTEGER PRIMARY KEY,
+  version INTEGER NOT NULL REFERENCES found_calibration,
+  in_use INTEGER NOT NULL,
+  who TEXT NOT NULL,
+  reason TEXT NOT NULL,
+  utc_ns INTEGER NOT NULL
+) STRICT;
+CREATE INDEX calibration_use_by_version ON calibration_use(version);
+ALTER TABLE calibration ADD COLUMN versions TEXT NOT NULL DEFAULT '';
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5,
+                                                              kVersion6, kVersion7, kVersion8, kVersion9};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

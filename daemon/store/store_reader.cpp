@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "daemon/store/database.h"
+#include "daemon/store/found_calibrations.h"
 #include "daemon/store/schema.h"
 #include "daemon/store/unfinished_scans.h"
+#include "daemon/store/version_list.h"
 #include "drivers/kinematics/kinematics.h"
 
 namespace gonio::daemon {
@@ -249,6 +251,10 @@ class SqliteStoreReader final : public StoreReader {
     return info;
   }
 
+  Result<std::vector<FoundCalibration>> found_calibrations() override {
+    return look([&] { return read_found_calibrations(*database_); });
+  }
+
   Result<std::vector<UnfinishedScan>> unfinished(Instant now, UtcTime utc_now) override {
     return look([&] { return read_unfinished(*database_, now, utc_now); });
   }
@@ -395,7 +401,7 @@ class SqliteStoreReader final : public StoreReader {
   BrdfInfo read_brdf(ScanId id) {
     BrdfInfo info;
     Statement& newest = database_->statement(
-        "SELECT calibration_id, code_version, inputs_json, component_names_json FROM calibration WHERE scan_id = ? "
+        "SELECT calibration_id, code_version, inputs_json, component_names_json, versions FROM calibration WHERE scan_id = ? "
         "ORDER BY calibration_id DESC LIMIT 1");
     newest.bind(id);
     while (newest.next()) {
@@ -404,6 +410,7 @@ class SqliteStoreReader final : public StoreReader {
       info.inputs_json = newest.text(2);
       const auto names = nlohmann::json::parse(newest.text(3), nullptr, false);
       if (names.is_array()) info.component_names = names.get<std::vector<std::string>>();
+      info.versions = version_list_from(newest.text(4));
     }
     Statement& query = database_->statement(
         "SELECT point_index, value_per_sr, u_random_per_sr, effective_dof, flags, theta_i_deg, phi_i_deg, theta_r_deg, "

@@ -76,6 +76,28 @@ struct BrdfInfo {
   std::string inputs_json;
   std::vector<std::string> component_names;
   std::vector<BrdfRow> rows;  ///< by point
+  std::vector<CalibrationVersion> versions{};
+};
+
+/// A change of what counts.
+struct CalibrationUse {
+  bool in_use = true;
+  std::string who;
+  std::string reason;
+  UtcTime at{};
+};
+/// What a calibration job has found, with its history.
+struct FoundCalibration {
+  CalibrationVersion version = 0;
+  ScanId scan = 0;
+  std::string job;
+  std::string sample;  ///< of the job's scan: the mirror, the check standard
+  std::string code_version;
+  std::string inputs_json;
+  calibration::FoundValues found;
+  UtcTime at{};
+  std::vector<CalibrationUse> uses;  ///< oldest first
+  bool counts = false;               ///< the last use of its job names it
 };
 
 /// Reads the store on its own read-only connection, beside the writer. Threads: one; any number of readers, also in
@@ -102,6 +124,8 @@ class StoreReader {
   [[nodiscard]] virtual Result<std::int64_t> last_event() = 0;
   /// The newest BRDF. Errors: NotFound when none was computed yet.
   [[nodiscard]] virtual Result<BrdfInfo> brdf(ScanId id) = 0;
+  /// All that calibration jobs have found, oldest first.
+  [[nodiscard]] virtual Result<std::vector<FoundCalibration>> found_calibrations() = 0;
   /// All scans that are not over, oldest first. For the sequencer's start.
   [[nodiscard]] virtual Result<std::vector<UnfinishedScan>> unfinished(Instant now, UtcTime utc_now) = 0;
 };

@@ -154,5 +154,16 @@ TEST_F(OldStore, OfVersion1HasPlansWithoutFilesAndPointsThatAreMeasuredOnce) {
   EXPECT_EQ(points->back().point.repeat, 1);
 }
 
+TEST_F(OldStore, OfVersion1HasFoundNothingByCalibrationJobs) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto found = (*StoreReader::open(path_))->found_calibrations();
+
+  ASSERT_TRUE(found) << describe(found.error());
+  EXPECT_TRUE(found->empty());
+}
+
 }  // namespace
 }  // namespace gonio::daemon
