@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 #define TOML_HEADER_ONLY 0  // Debian ships the parser compiled: this file then builds in 1 s instead of 25 s
 #include <toml++/toml.h>
+
+#include "base/read_file.h"
 
 namespace gonio {
 
@@ -192,15 +192,9 @@ Result<TomlReader> TomlReader::parse(std::string_view text, std::string file) {
 }
 
 Result<TomlReader> TomlReader::parse_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in.good() && !in.eof()) {
-    return failure({.code = ErrorCode::FileUnreadable,
-                    .tried = "open the file",
-                    .seen = "it does not exist or may not be read",
-                    .where = InputLocation{path, 0, ""}});
-  }
-  return parse(text, path);
+  const Result<std::string> text = read_file(path);
+  if (!text) return failure(text.error());
+  return parse(*text, path);
 }
 
 double TomlReader::number(std::string_view key, NumberRange range) {

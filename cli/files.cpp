@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+
+#include "base/read_file.h"
 
 namespace gonio::cli {
 namespace {
@@ -32,13 +32,7 @@ bool write_all(int fd, const std::string& text) {
 }  // namespace
 
 Result<std::string> read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (in.good() || in.eof()) return text;
-  return failure({.code = ErrorCode::FileUnreadable,
-                  .tried = "open the file",
-                  .seen = "it does not exist or may not be read",
-                  .where = InputLocation{path, 0, ""}});
+  return read_file(path);
 }
 
 Result<void> write_text(const std::string& path, const std::string& text) {

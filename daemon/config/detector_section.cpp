@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
+#include "base/read_file.h"
 #include "base/toml_reader.h"
 #include "calibration/map_file.h"
 #include "daemon/config/configuration_hash.h"
@@ -62,11 +61,10 @@ class MapLoader {
   Result<MapFile> load(const std::string& file, std::size_t most_layers) {
     if (file.empty()) return MapFile{};
     const std::string path = (directory_ / file).string();
-    std::ifstream in(path, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    if (!in.good() && !in.eof()) return failure(refusal(ErrorCode::FileUnreadable, path, "it cannot be read", ""));
-    hashed_ += fmt::format("{} bytes\n", bytes.size()) + bytes;
-    auto map = calibration::parse_map_file({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path);
+    const Result<std::string> bytes = read_file(path);
+    if (!bytes) return failure(bytes.error());
+    hashed_ += fmt::format("{} bytes\n", bytes->size()) + *bytes;
+    auto map = calibration::parse_map_file({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, path);
     if (!map) return map;
     if (map->width == detector_.width_px && map->height == detector_.height_px && map->layers.size() <= most_layers)
       return map;

@@ -6,10 +6,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
+#include "base/read_file.h"
 #include "base/toml_reader.h"
 #include "daemon/config/configuration_hash.h"
 #include "daemon/config/drives_section.h"
@@ -27,6 +26,8 @@ constexpr NumberRange kTime{.least = 0.0, .most = kAnHour, .unit = "s"};
 constexpr NumberRange kLength{.least = 1e-3, .most = 1e5, .unit = "mm"};
 constexpr NumberRange kNotNegative{.least = 0.0};
 constexpr NumberRange kFraction{.least = 0.0, .most = 1.0};
+/// Of any axis, in its unit: beyond it a position would have lost digits that its encoder counts.
+constexpr double kFarthestPosition = 1e6;
 constexpr NumberRange kAngleUncertainty{.least = 0.0, .most = 5.0, .unit = "deg"};
 
 Duration time(TomlReader& table, std::string_view key, NumberRange range = kSomeTime) {
@@ -45,7 +46,7 @@ drivers::AxisConfig read_axis(TomlReader& table, std::string_view unit) {
   const auto key = [&](std::string_view name, std::string_view per = {}) {
     return fmt::format("{}_{}{}", name, unit, per);
   };
-  const NumberRange position{.unit = unit};
+  const NumberRange position{.least = -kFarthestPosition, .most = kFarthestPosition, .unit = unit};
   const NumberRange positive{.least = 1e-9, .unit = unit};
   drivers::AxisConfig axis;
   axis.offset = table.number(key("offset"), position);
@@ -254,15 +255,9 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
 }
 
 Result<Instrument> read_instrument(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in.good() && !in.eof()) {
-    return failure({.code = ErrorCode::FileUnreadable,
-                    .tried = "open the instrument's file",
-                    .seen = "it does not exist or may not be read",
-                    .where = InputLocation{path, 0, ""}});
-  }
-  Result<Instrument> instrument = parse_instrument(text, path);
+  const Result<std::string> text = read_file(path);
+  if (!text) return failure(text.error());
+  Result<Instrument> instrument = parse_instrument(*text, path);
   if (!instrument || !instrument->detector.map_files.any()) return instrument;
   auto maps = load_detector_maps(instrument->detector, std::filesystem::path(path).parent_path().string());
   if (!maps) return failure(std::move(maps).error());
