@@ -35,7 +35,7 @@ double slot_of(const Scene& scene, Wavelength wavelength) {
 ReadingLevel::ReadingLevel(Scene scene)
     : scene_(std::move(scene)), truth_(scene_), lamp_(scene_), light_path_(scene_, truth_), charge_(scene_, truth_) {}
 
-ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
+Exposure ReadingLevel::expose(const ReadingRequest& request) const {
   assert(request.exposure > Duration::zero());
   StagePose pose{.last_move = request.move, .source_open = !request.is_ambient, .detector_open = !request.is_dark};
   pose.positions[index_of(Axis::ThetaI)] = in_degrees(request.encoders.theta_i);
@@ -56,8 +56,16 @@ ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
                                       request.at_scene_s, length_s);
   exposure.number = request.exposure_number;
   exposure.place = light_path_.place(pose);
-  return {.region = draw_region(scene_.detector, exposure, scene_.seed),
-          .monitor = lamp_.monitor(request.at_scene_s, to_s, request.exposure_number)};
+  return exposure;
+}
+
+MonitorReading ReadingLevel::monitor(const ReadingRequest& request) const {
+  const double to_s = request.at_scene_s + scene_.scene_seconds(request.exposure);
+  return lamp_.monitor(request.at_scene_s, to_s, request.exposure_number);
+}
+
+ReadingAnswer ReadingLevel::read(const ReadingRequest& request) const {
+  return {.region = draw_region(scene_.detector, expose(request), scene_.seed), .monitor = monitor(request)};
 }
 
 }  // namespace gonio::sim

@@ -44,6 +44,10 @@ class ReadingLevel {
   ReadingLevel& operator=(const ReadingLevel&) = delete;
 
   [[nodiscard]] ReadingAnswer read(const ReadingRequest& request) const;
+  /// What `read` draws its statistics from: the charge of the exposure before any noise, as `render_frame` takes it.
+  [[nodiscard]] Exposure expose(const ReadingRequest& request) const;
+  /// The monitor over the same stretch as the exposure.
+  [[nodiscard]] MonitorReading monitor(const ReadingRequest& request) const;
   [[nodiscard]] const Truth& truth() const { return truth_; }
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
