@@ -227,9 +227,12 @@ constexpr int kBlocks = 16;
 Result<Departures> run_block(const PreparedScene& prepared, const calibration::ReferenceStandard& standard,
                              const Disturber& disturber, const CalibratedScan& nominal, int draws, std::uint64_t seed) {
   Departures d(nominal.points.size());
+  calibration::CalibrationOptions how;
+  how.threads = 1;
+  how.monte_carlo = calibration::MonteCarloUse::Never;  // of the values alone is asked here
   for (int k = 0; k < draws; ++k) {
     const std::uint64_t key = seed + static_cast<std::uint64_t>(k);
-    const auto scan = calibration::calibrate(disturber.draw(key), prepared.told, standard, kDayOfBudget);
+    const auto scan = calibration::calibrate(disturber.draw(key), prepared.told, standard, kDayOfBudget, how);
     if (!scan) return failure(scan.error());
     sim::Chance chance(key, static_cast<sim::Purpose>(1002));
     const std::vector<double> stated = stated_departures(nominal, chance);
@@ -279,7 +282,9 @@ Result<BudgetComparison> compare_budget(const PreparedScene& prepared, int draws
   ShortScan short_scan(plan, prepared.points);
   const ScanReadings measured = short_scan.measure(instrument);
   const calibration::ReferenceStandard standard(prepared.reference);
-  const auto nominal = calibration::calibrate(measured, prepared.told, standard, kDayOfBudget);
+  calibration::CalibrationOptions by_formula;
+  by_formula.monte_carlo = calibration::MonteCarloUse::Never;
+  const auto nominal = calibration::calibrate(measured, prepared.told, standard, kDayOfBudget, by_formula);
   if (!nominal) return failure(nominal.error());
   const Disturber disturber(prepared, instrument.truth(), measured);
 

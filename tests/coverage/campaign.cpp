@@ -23,7 +23,10 @@ Result<RepetitionOutcome> repeat(const PreparedScene& prepared, const calibratio
   ShortScan short_scan(prepared.scene.plan, prepared.points);
   calibration::ScanReadings readings = short_scan.measure(instrument);
   if (left_out) leave_out(*left_out, readings);
-  const auto scan = calibration::calibrate(readings, prepared.told, standard, kToday);
+  calibration::CalibrationOptions how;
+  how.threads = 1;
+  how.left_out.overlap = left_out == Correction::Overlap;
+  const auto scan = calibration::calibrate(readings, prepared.told, standard, kToday, how);
   if (!scan) return failure(scan.error());
   return outcome_of(*scan, instrument.truth(), prepared.points.size(), prepared.scene.has_lobe,
                     left_out != Correction::Correlation);

@@ -119,7 +119,7 @@ const char* stratum_name(Stratum stratum) {
 }
 
 bool ValueOutcome::is_held() const {
-  return std::abs(error) <= expanded;
+  return error <= below && -error <= above;
 }
 
 RepetitionOutcome outcome_of(const calibration::CalibratedScan& scan, const sim::Truth& truth, std::size_t planned,
@@ -132,10 +132,13 @@ RepetitionOutcome outcome_of(const calibration::CalibratedScan& scan, const sim:
   for (const auto& point : scan.points) {
     const double true_value = truth.sample(point.geometry).si();
     const double expanded = point.budget.expanded.si();
+    const bool is_drawn = point.budget.method == calibration::BudgetMethod::MonteCarlo;
     outcome.points.push_back({.point = point.point_index,
                               .error = point.value.si() - true_value,
                               .u = point.budget.u.si(),
                               .expanded = expanded,
+                              .below = is_drawn ? point.budget.below.si() : expanded,
+                              .above = is_drawn ? point.budget.above.si() : expanded,
                               .value = point.value.si(),
                               .strata = strata_of(point.geometry, true_value, expanded, lobe_from)});
   }
@@ -152,6 +155,8 @@ RepetitionOutcome outcome_of(const calibration::CalibratedScan& scan, const sim:
                            .error = sum.value.si() - true_sum,
                            .u = u,
                            .expanded = 2.0 * u,
+                           .below = 2.0 * u,
+                           .above = 2.0 * u,
                            .value = sum.value.si(),
                            .strata = 0});
   }

@@ -28,6 +28,8 @@ struct ValueOutcome {
   double error = 0.0;     ///< value - truth, sr^-1
   double u = 0.0;         ///< combined, k = 1
   double expanded = 0.0;  ///< U
+  double below = 0.0;     ///< the interval is [value - below, value + above]
+  double above = 0.0;
   double value = 0.0;
   std::uint8_t strata = 0;  ///< bits by Stratum
   [[nodiscard]] bool is_held() const;

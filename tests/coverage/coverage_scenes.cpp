@@ -1,4 +1,7 @@
 // The scenes of the coverage test. What a scene draws and what it tells come from the same constants.
+#include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "tests/coverage/coverage_scene.h"
@@ -110,6 +113,7 @@ void add_lamp_scenes(std::vector<CoverageScene>& list) {
   };
   ScanPlan blind;
   blind.monitor_is_blind = blind.visits = true;
+  blind.block = 5;
   list.push_back({.name = "unseen_drift",
                   .what = "20 % an hour, not seen by the monitor, visits of the standard",
                   .file = "wheat",
@@ -128,19 +132,35 @@ void add_lamp_scenes(std::vector<CoverageScene>& list) {
 }
 
 void add_detector_scenes(std::vector<CoverageScene>& list) {
-  constexpr double kResidual = 0.002;
+  // What a ladder's fit leaves: the curve's first coefficient and the shutter's offset, each taken for the other.
+  constexpr double kBend = 0.02;
+  constexpr double kUBend = 0.002;
+  constexpr double kUOffset = 1e-5;
+  constexpr double kCorrelation = -0.8;
   list.push_back({.name = "nonlinear",
-                  .what = "camera that bends by 2 %, its curve known to 0.2 %",
+                  .what = "camera that bends by 2 %, its curve and its shutter fitted together",
                   .file = "wheat",
                   .first_seed = 16'000'000,
                   .plan = small_plan(),
-                  .bend =
-                      [](Scene& s) {
-                        s.detector.u_linearity = kResidual;
+                  .bend = [](Scene& s) { s.detector.u_linearity = 2e-4; },
+                  .draw =
+                      [](Scene& s, Chance& chance) {
+                        const double bend = chance.normal();
+                        const double rest = std::sqrt(1.0 - kCorrelation * kCorrelation);
                         s.effects.response.emplace();
-                        s.effects.response->quadratic = -0.02;
+                        s.effects.response->quadratic = -(kBend + kUBend * bend);
+                        s.effects.exposure_offset_s = kUOffset * (kCorrelation * bend + rest * chance.normal());
                       },
-                  .fails_for = "no curve of the detector's linearity can be told"});
+                  .tell =
+                      [](InstrumentModel& m) {
+                        // The inverse of y = x (1 - b x) as a series in y.
+                        m.detector.linearity.coefficients = {kBend, 2.0 * kBend * kBend, 5.0 * kBend * kBend * kBend};
+                        const double both = kCorrelation * kUBend * kUOffset;
+                        m.detector.linearity.covariance.assign(16, 0.0);
+                        m.detector.linearity.covariance[0] = kUBend * kUBend;
+                        m.detector.linearity.covariance[3] = m.detector.linearity.covariance[12] = both;
+                        m.detector.linearity.covariance[15] = kUOffset * kUOffset;
+                      }});
   constexpr double kT0 = 4e-4;
   constexpr double kUT0 = 5e-5;
   list.push_back({.name = "exposure_offset",
@@ -219,42 +239,97 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                           mount->height = kHeight * chance.normal();
                         }
                       },
-                  .fails_for = "tilt and height of a mount are not in the budget"});
+                  .tell =
+                      [](InstrumentModel& m) {
+                        auto& mounting = m.mounting.emplace();
+                        for (calibration::MountModel* mount : {&mounting.sample, &mounting.reference}) {
+                          mount->lean_0.u = mount->lean_90.u = kLean;
+                          mount->height.u = kHeight;
+                        }
+                      }});
+  constexpr Angle kCone = degrees(3.0);
+  constexpr Angle kUCone = degrees(0.1);
   list.push_back({.name = "wide_cones",
-                  .what = "source and detector of 3 deg half angle",
+                  .what = "source and detector of 3 deg half angle, known to 0.1 deg",
                   .file = "wheat",
                   .first_seed = 24'000'000,
                   .plan = small_plan(),
-                  .bend =
-                      [](Scene& s) {
-                        s.effects.cones = {
-                            .source_half = degrees(3.0), .detector_half = degrees(3.0), .tolerance = 1e-4};
+                  .draw =
+                      [](Scene& s, Chance& chance) {
+                        s.effects.cones = {.source_half = kCone + kUCone * chance.normal(),
+                                           .detector_half = kCone + kUCone * chance.normal(),
+                                           .tolerance = 1e-4};
                       },
-                  .fails_for = "finite cones are not in the budget"});
+                  .tell =
+                      [](InstrumentModel& m) {
+                        m.cones = {.source_half = {kCone, kUCone}, .detector_half = {kCone, kUCone}};
+                      }});
+}
+
+void add_stray_scenes(std::vector<CoverageScene>& list) {
+  constexpr double kDegree = 0.05;
   list.push_back({.name = "polarised",
-                  .what = "source and detector polarise by 5 %, a glint",
+                  .what = "source and detector polarise by 5 % in planes that nobody knows, a glint",
                   .file = "glint",
                   .first_seed = 25'000'000,
                   .plan = through_the_mirror_direction(),
                   .has_lobe = true,
                   .draw =
                       [](Scene& s, Chance& chance) {
-                        s.effects.polarisation = {.source_degree = 0.05,
+                        s.effects.polarisation = {.source_degree = kDegree,
                                                   .source_plane = degrees(180.0 * chance.uniform()),
-                                                  .detector_diattenuation = 0.05,
+                                                  .detector_diattenuation = kDegree,
                                                   .detector_plane = degrees(180.0 * chance.uniform())};
                       },
-                  .fails_for = "polarisation is not in the budget"});
+                  .tell =
+                      [](InstrumentModel& m) {
+                        // The deviation of cos(2 angle) for a plane of any angle; the standard depolarises.
+                        m.polarisation = {.source_degree = kDegree,
+                                          .detector_diattenuation = kDegree,
+                                          .u_sample = std::numbers::sqrt2 / 2.0,
+                                          .u_reference = 0.0,
+                                          .sample_index = 1.34};
+                      }});
+  ScanPlan visited;
+  visited.stray_visits = true;
   list.push_back({.name = "stray",
-                  .what = "black, room light and stray light of the lamp",
+                  .what = "black, room light and stray light of the lamp, both as bright as it",
                   .file = "dark",
                   .first_seed = 26'000'000,
-                  .bend =
-                      [](Scene& s) {
-                        s.effects.stray = {
-                            .ambient_electrons_per_s = 50.0, .source_share = 1e-4, .internal_share = 0.0};
+                  .plan = visited,
+                  .draw =
+                      [](Scene& s, Chance& chance) {
+                        s.effects.stray = {.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
+                                           .source_share = 1e-4 * (1.0 + chance.uniform()),
+                                           .internal_share = 0.0};
+                      }});
+}
+
+void add_anchor_scenes(std::vector<CoverageScene>& list) {
+  constexpr Length kSpot = millimetres(10.0);
+  constexpr Length kField = millimetres(3.0);
+  constexpr double kRelative = 0.005;
+  ScanPlan plan;
+  plan.visits = true;
+  plan.reference_mode = calibration::ReferenceMode::Anchor;
+  list.push_back({.name = "anchor",
+                  .what = "the standard at 0/45 alone; spot 10 mm, field of view 3 mm, known to 0.5 %",
+                  .file = "wheat",
+                  .first_seed = 27'000'000,
+                  .plan = plan,
+                  .draw =
+                      [](Scene& s, Chance& chance) {
+                        s.effects.overlap = sim::OverlapSpec{.spot_radius = kSpot * (1.0 + kRelative * chance.normal()),
+                                                             .field_radius = kField * (1.0 + kRelative * chance.normal()),
+                                                             .sample_radius = std::nullopt,
+                                                             .reference_radius = std::nullopt};
                       },
-                  .fails_for = "neither ambient nor stray light is subtracted"});
+                  .tell =
+                      [](InstrumentModel& m) {
+                        auto& overlap = m.overlap.emplace();
+                        overlap.spot_radius = {kSpot, kSpot * kRelative};
+                        overlap.field_radius = {kField, kField * kRelative};
+                      }});
 }
 
 }  // namespace
@@ -268,6 +343,8 @@ std::vector<CoverageScene> coverage_scenes() {
   add_detector_scenes(list);
   add_reference_scenes(list);
   add_bench_scenes(list);
+  add_stray_scenes(list);
+  add_anchor_scenes(list);
   return list;
 }
 

@@ -93,16 +93,11 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CoverageWithoutCertificate,
                          testing::ValuesIn(scenes_named({"lambertian", "wheat", "glint", "shape", "drifted_lamp"})),
                          name_of);
 
-struct LeftOut {
-  Correction correction;
-  const char* scene;
-};
-
-void PrintTo(const LeftOut& c, std::ostream* out) {
+void PrintTo(const LeftOutCase& c, std::ostream* out) {
   *out << correction_name(c.correction);
 }
 
-class CoverageWithoutACorrection : public testing::TestWithParam<LeftOut> {};
+class CoverageWithoutACorrection : public testing::TestWithParam<LeftOutCase> {};
 
 TEST_P(CoverageWithoutACorrection, IsFoundOut) {
   const auto scenes = scenes_named({GetParam().scene});
@@ -116,13 +111,8 @@ TEST_P(CoverageWithoutACorrection, IsFoundOut) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, CoverageWithoutACorrection,
-                         testing::Values(LeftOut{Correction::Dark, "dark"},
-                                         LeftOut{Correction::ExposureOffset, "exposure_offset"},
-                                         LeftOut{Correction::Monitor, "drifted_lamp"},
-                                         LeftOut{Correction::Visits, "unseen_drift"},
-                                         LeftOut{Correction::Shape, "lambertian"},
-                                         LeftOut{Correction::Correlation, "lambertian"}),
-                         [](const testing::TestParamInfo<LeftOut>& test) {
+                         testing::ValuesIn(left_out_cases()),
+                         [](const testing::TestParamInfo<LeftOutCase>& test) {
                            std::string name = correction_name(test.param.correction);
                            std::ranges::replace(name, ' ', '_');
                            return name;

@@ -29,6 +29,10 @@ const char* correction_name(Correction correction) {
   switch (correction) {
     case Correction::Dark:
       return "dark";
+    case Correction::Ambient:
+      return "ambient light";
+    case Correction::Stray:
+      return "stray light";
     case Correction::Linearity:
       return "linearity";
     case Correction::ExposureOffset:
@@ -39,15 +43,39 @@ const char* correction_name(Correction correction) {
       return "visits";
     case Correction::Shape:
       return "shape of the reference";
+    case Correction::Cones:
+      return "cones";
+    case Correction::Overlap:
+      return "overlap";
     case Correction::Correlation:
       return "correlation";
   }
   return "";
 }
 
+std::vector<LeftOutCase> left_out_cases() {
+  return {{Correction::Dark, "dark"},
+          {Correction::Ambient, "stray"},
+          {Correction::Stray, "stray"},
+          {Correction::Linearity, "nonlinear"},
+          {Correction::ExposureOffset, "exposure_offset"},
+          {Correction::Monitor, "drifted_lamp"},
+          {Correction::Visits, "unseen_drift"},
+          {Correction::Shape, "lambertian"},
+          {Correction::Cones, "wide_cones"},
+          {Correction::Overlap, "anchor"},
+          {Correction::Correlation, "lambertian"}};
+}
+
 void leave_out(Correction correction, PreparedScene& scene) {
   if (correction == Correction::ExposureOffset) scene.told.detector.exposure_offset_s.value = 0.0;
+  if (correction == Correction::Linearity) {
+    std::ranges::fill(scene.told.detector.linearity.coefficients, 0.0);
+  }
   if (correction == Correction::Shape) flatten(scene.reference);
+  if (correction == Correction::Cones && scene.told.cones) {
+    scene.told.cones->source_half.value = scene.told.cones->detector_half.value = Angle{};
+  }
 }
 
 void leave_out(Correction correction, calibration::ScanReadings& readings) {
@@ -56,8 +84,11 @@ void leave_out(Correction correction, calibration::ScanReadings& readings) {
     if (correction != Correction::Monitor) continue;
     for (RawFrame& frame : reading.frames) frame.monitor_mean = 1.0;
   }
-  if (correction != Correction::Visits) return;
-  std::erase_if(readings.readings, [](const RawReading& r) { return r.visited_point.has_value(); });
+  std::erase_if(readings.readings, [&](const RawReading& r) {
+    return (correction == Correction::Visits && r.visited_point) ||
+           (correction == Correction::Ambient && r.target == Target::Ambient) ||
+           (correction == Correction::Stray && r.target == Target::Trap);
+  });
 }
 
 }  // namespace gonio::coverage

@@ -77,7 +77,9 @@ std::vector<PlannedPoint> ShortScan::points_of(const ScanPlan& plan) {
 }
 
 ScanReadings ShortScan::measure(const sim::ReadingLevel& instrument) {
-  scan_ = {.isotropic = true, .points = points_, .drift_limit = std::nullopt, .readings = {}};
+  scan_ = {};
+  scan_.points = points_;
+  scan_.reference_mode = plan_.reference_mode;
   chance_ = sim::Chance(instrument.scene().seed, sim::Purpose::Linearity, kOwnCounter);
   draw_meter(instrument.scene().seed);
   const auto begin_stretch = [&] {
@@ -86,18 +88,17 @@ ScanReadings ShortScan::measure(const sim::ReadingLevel& instrument) {
     const double stretch_s = static_cast<double>(2 * plan_.block) * kMoveS;
     step_at_s_ = now_s_ + chance_.uniform() * stretch_s;
   };
-  visit_dark(instrument);
-  visit_standard(instrument);
+  visit_all(instrument);
   for (std::size_t first = 0; first < points_.size(); first += plan_.block) {
     const std::size_t last = std::min(points_.size(), first + plan_.block);
     dark_drift_dn_per_s_ = plan_.u_dark_drift_dn_per_s * chance_.normal();
     for (double& zero : range_zeros_) zero = plan_.meter.u_zero * chance_.normal();
     begin_stretch();
     for (const Target target : {Target::Sample, Target::Reference}) {
+      if (target == Target::Reference && plan_.reference_mode != calibration::ReferenceMode::SameGeometry) continue;
       for (std::size_t n = first; n < last; ++n) read_item(instrument, points_[n], target);
     }
-    visit_standard(instrument);
-    visit_dark(instrument);
+    visit_all(instrument);
   }
   return std::move(scan_);
 }
@@ -149,14 +150,40 @@ void ShortScan::visit_standard(const sim::ReadingLevel& instrument) {
   if (!plan_.visits) return;
   now_s_ += kMoveS;
   ++moves_;
+  const auto from_0_45 = [](const PlannedPoint& p) {
+    return std::abs(in_degrees(p.geometry.theta_i)) + std::abs(in_degrees(p.geometry.theta_r) - 45.0);
+  };
+  const PlannedPoint& point = *std::ranges::min_element(points_, {}, from_0_45);
   RawReading& reading = begin(Target::Reference);
-  reading.visited_point = points_.front().index;
+  reading.visited_point = point.index;
   add_frames(instrument,
              {.target = sim::Station::Reference,
-              .encoders = points_.front().geometry,
+              .encoders = point.geometry,
               .wavelength = plan_.wavelength,
               .move = moves_},
              reading);
+}
+
+void ShortScan::visit_stray(const sim::ReadingLevel& instrument) {
+  if (!plan_.stray_visits) return;
+  for (const Target target : {Target::Ambient, Target::Trap}) {
+    now_s_ += kMoveS;
+    ++moves_;
+    RawReading& reading = begin(target);
+    const sim::ReadingRequest request{.target = sim::Station::Trap,
+                                      .is_ambient = target == Target::Ambient,
+                                      .encoders = points_.front().geometry,
+                                      .wavelength = plan_.wavelength,
+                                      .move = moves_};
+    const double exposure_s = ladder(instrument.scene().detector).back();
+    for (int k = 0; k < plan_.frames; ++k) reading.frames.push_back(expose(instrument, request, exposure_s));
+  }
+}
+
+void ShortScan::visit_all(const sim::ReadingLevel& instrument) {
+  visit_dark(instrument);
+  visit_standard(instrument);
+  visit_stray(instrument);
 }
 
 double ShortScan::chosen_exposure_s(const sim::ReadingLevel& instrument, const sim::ReadingRequest& request) {

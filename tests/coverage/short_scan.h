@@ -47,8 +47,11 @@ struct ScanPlan {
   MeterSpec meter;
   /// What interpolation between two darks misses: drawn once an interval.
   double u_dark_drift_dn_per_s = 0.0;
-  /// Visits of the standard before the first block and after each, at the first point.
+  /// Visits of the standard before the first block and after each, at 0/45 or as near to it as the points are.
   bool visits = false;
+  /// Visits with the source's shutter closed and of the black trap, likewise.
+  bool stray_visits = false;
+  calibration::ReferenceMode reference_mode = calibration::ReferenceMode::SameGeometry;
   /// A monitor that shows 1, whatever the lamp does.
   bool monitor_is_blind = false;
   /// A step of the response, by this part, somewhere in each stretch between two visits, at a moment of its own.
@@ -76,6 +79,8 @@ class ShortScan {
   void draw_meter(std::uint64_t seed);
   void visit_dark(const sim::ReadingLevel& instrument);
   void visit_standard(const sim::ReadingLevel& instrument);
+  void visit_stray(const sim::ReadingLevel& instrument);
+  void visit_all(const sim::ReadingLevel& instrument);
   void read_item(const sim::ReadingLevel& instrument, const calibration::PlannedPoint& point,
                  calibration::Target target);
   void add_frames(const sim::ReadingLevel& instrument, const sim::ReadingRequest& request,
