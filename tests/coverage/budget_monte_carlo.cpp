@@ -56,8 +56,26 @@ struct SharedDraw {
   Angle zero_theta_i, zero_theta_r, zero_phi_r;
   double offset_s = 0.0;
   double linearity = 0.0;
+  std::vector<double> curve;  ///< of the fitted coefficients
   std::vector<double> range_gains;
 };
+
+// Draws with this covariance [n][n], by Cholesky's factor; a variance of 0 draws 0.
+std::vector<double> draw_joint(const std::vector<double>& covariance, sim::Chance& chance) {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
+  std::vector<double> factor(n * n, 0.0), normals(n), drawn(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = covariance[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) sum -= factor[i * n + k] * factor[j * n + k];
+      const double pivot = factor[j * n + j];
+      factor[i * n + j] = i == j ? std::sqrt(std::max(0.0, sum)) : pivot > 0.0 ? sum / pivot : 0.0;
+    }
+    normals[i] = chance.normal();
+    for (std::size_t k = 0; k <= i; ++k) drawn[i] += factor[i * n + k] * normals[k];
+  }
+  return drawn;
+}
 
 class Disturber {
  public:
@@ -85,7 +103,8 @@ class Disturber {
         dark_drift = told_.detector.u_dark_drift_dn_per_s * chance.normal();
         for (double& zero : range_zeros) zero = plan_.meter.u_zero * chance.normal();
       }
-      const double light = reading.target == Target::Dark ? 1.0 : factor(reading, shared, chance);
+      const bool is_target = reading.target == Target::Sample || reading.target == Target::Reference;
+      const double light = is_target ? factor(reading, shared, chance) : 1.0;
       const double monitor =
           1.0 + lamp.at(in_seconds(reading.at.time_since_epoch()), told_.lamp.u_after_monitor / std::sqrt(2.0));
       const double scatter = scatter_of(reading);
@@ -113,7 +132,12 @@ class Disturber {
                  .zero_phi_r = told_.angles.u_zero_phi_r * chance.normal(),
                  .offset_s = told_.detector.exposure_offset_s.u * chance.normal(),
                  .linearity = told_.detector.u_linearity * chance.normal(),
+                 .curve = draw_joint(told_.detector.linearity.covariance, chance),
                  .range_gains = {}};
+    if (!d.curve.empty()) {  // its last is the exposure offset
+      d.offset_s = d.curve.back();
+      d.curve.pop_back();
+    }
     for (const sim::ShapeMode& mode : scene_.reference.modes) d.modes.push_back(mode.u * chance.normal());
     for (std::size_t r = 0; r < plan_.meter.ranges_w.size(); ++r) {
       d.range_gains.push_back(1.0 + plan_.meter.u_range * chance.normal());
@@ -166,7 +190,10 @@ class Disturber {
     const double noise = by_scatter ? scatter : std::sqrt(variance / frame.region.n);
     const double t = frame.exposure_s + told_.detector.exposure_offset_s.value;
     const double longer = 1.0 + d.offset_s / t;
-    const double bent = net * light * longer;
+    const double x = net / told_.detector.full_scale_dn;
+    double straight = 1.0;  // by the true curve over the told one
+    for (std::size_t k = 0; k < d.curve.size(); ++k) straight += d.curve[k] * std::pow(x, static_cast<double>(k + 1));
+    const double bent = net * light * longer / straight;
     frame.region.mean = (target == Target::Dark ? frame.region.mean : dark) +
                         bent * (1.0 + d.linearity * bent / told_.detector.full_scale_dn) + noise * chance.normal();
     if (target != Target::Dark) frame.region.mean += dark_drift * frame.exposure_s;

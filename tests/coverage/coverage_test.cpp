@@ -14,6 +14,7 @@
 namespace gonio::coverage {
 namespace {
 
+constexpr int kRepetitions = 300;
 constexpr int kThreads = 2;
 
 void PrintTo(const CoverageScene& c, std::ostream* out) {
@@ -28,7 +29,7 @@ CoverageFigures measured(const CoverageScene& scene, bool without_certificate,
     return {};
   }
   const auto outcomes =
-      run_campaign(*prepared, {.repetitions = GONIO_COVERAGE_REPETITIONS, .threads = kThreads, .left_out = left_out});
+      run_campaign(*prepared, {.repetitions = kRepetitions, .threads = kThreads, .left_out = left_out});
   if (!outcomes) {
     ADD_FAILURE() << describe(outcomes.error());
     return {};
