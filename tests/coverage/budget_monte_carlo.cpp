@@ -27,23 +27,10 @@ constexpr auto kOwnPurpose = static_cast<sim::Purpose>(1001);
 
 // Components whose input is disturbed below; all others are drawn from what the budget states.
 bool is_carried_by_inputs(std::string_view name) {
-  constexpr std::array<std::string_view, 17> kCarried = {"noise of",
-                                                         "monitor noise",
-                                                         "reproducibility of",
-                                                         "angle repeatability",
-                                                         "certificate",
-                                                         "shape mode",
-                                                         "shape integral",
-                                                         "zero theta_i",
-                                                         "zero theta_r",
-                                                         "zero phi_r",
-                                                         "exposure offset",
-                                                         "linearity",
-                                                         "lamp after",
-                                                         "dark visit",
-                                                         "dark drift",
-                                                         "reference",
-                                                         "gain of the range"};
+  constexpr std::array<std::string_view, 17> kCarried = {
+      "noise of",       "monitor noise", "reproducibility of", "angle repeatability", "certificate",      "shape mode",
+      "shape integral", "zero theta_i",  "zero theta_r",       "zero phi_r",          "exposure offset",  "linearity",
+      "lamp after",     "dark visit",    "dark drift",         "reference",           "gain of the range"};
   if (name.find("unresolved") != std::string_view::npos) return false;
   if (name.starts_with("zero ") && name.find("in the range") != std::string_view::npos) return true;
   return std::ranges::any_of(kCarried, [&](std::string_view start) { return name.starts_with(start); });
@@ -87,7 +74,8 @@ class Disturber {
       const std::vector<double> unit = {1.0};
       // The factor is 1 + M: what it adds to the integral of the shape, which is 1, is the mode's mean.
       mode_means_.push_back(
-          sim::integral_at_8_degrees([&](const Geometry& g) { return shape(g) * sim::mode_factor(g, one, unit); }) - 1.0);
+          sim::integral_at_8_degrees([&](const Geometry& g) { return shape(g) * sim::mode_factor(g, one, unit); }) -
+          1.0);
     }
   }
 
@@ -184,8 +172,8 @@ class Disturber {
     const double current = spec.dark_dn_per_s * frame.exposure_s;
     const double dark = spec.offset_dn + current;
     const double net = target == Target::Dark ? 0.0 : frame.region.mean - dark;
-    const double variance = std::pow(told_.detector.read_noise_dn, 2) +
-                            (current + std::max(0.0, net)) / told_.detector.electrons_per_dn;
+    const double variance =
+        std::pow(told_.detector.read_noise_dn, 2) + (current + std::max(0.0, net)) / told_.detector.electrons_per_dn;
     const bool by_scatter = scatter > 0.0 && target != Target::Dark;
     const double noise = by_scatter ? scatter : std::sqrt(variance / frame.region.n);
     const double t = frame.exposure_s + told_.detector.exposure_offset_s.value;
@@ -204,8 +192,7 @@ class Disturber {
     const MeterSpec& meter = plan_.meter;
     calibration::PowerReading& power = *frame.power;
     const auto range = static_cast<std::size_t>(
-        std::ranges::min_element(meter.ranges_w, {},
-                                 [&](double r) { return std::abs(std::log(r / power.range_w)); }) -
+        std::ranges::min_element(meter.ranges_w, {}, [&](double r) { return std::abs(std::log(r / power.range_w)); }) -
         meter.ranges_w.begin());
     const double noise = meter.noise * power.range_w / std::sqrt(static_cast<double>(power.samples));
     if (target != Target::Dark) {
@@ -264,7 +251,8 @@ Result<Departures> run_block(const PreparedScene& prepared, const calibration::R
     sim::Chance chance(key, static_cast<sim::Purpose>(1002));
     const std::vector<double> stated = stated_departures(nominal, chance);
     for (const auto& point : scan->points) {
-      const auto same = std::ranges::find(nominal.points, point.point_index, &calibration::CalibratedPoint::point_index);
+      const auto same =
+          std::ranges::find(nominal.points, point.point_index, &calibration::CalibratedPoint::point_index);
       if (same == nominal.points.end()) continue;
       const auto n = static_cast<std::size_t>(same - nominal.points.begin());
       const double departure = point.value.si() - same->value.si() + stated[n];
@@ -319,8 +307,8 @@ Result<BudgetComparison> compare_budget(const PreparedScene& prepared, int draws
   const int each = std::max(1, draws / kBlocks);
   const auto work = [&](int first) {
     for (int b = first; b < kBlocks; b += threads) {
-      blocks[static_cast<std::size_t>(b)].emplace(run_block(prepared, standard, disturber, *nominal, each,
-                                                            seed + static_cast<std::uint64_t>(b * each)));
+      blocks[static_cast<std::size_t>(b)].emplace(
+          run_block(prepared, standard, disturber, *nominal, each, seed + static_cast<std::uint64_t>(b * each)));
     }
   };
   std::vector<std::jthread> helpers;
@@ -331,8 +319,8 @@ Result<BudgetComparison> compare_budget(const PreparedScene& prepared, int draws
   for (const auto& block : blocks) {
     if (!*block) return failure(block->error());
     for (std::size_t p = 0; p < all.sum.size(); ++p) {
-      all.sum[p] += (**block)->sum[p];
-      all.squares[p] += (**block)->squares[p];
+      all.sum[p] += (*block)->sum[p];
+      all.squares[p] += (*block)->squares[p];
     }
   }
   return summary(*nominal, all, each * kBlocks);

@@ -20,10 +20,11 @@ struct BudgetComparison {
 };
 
 /// One scan of the scene without any drawn error is what was measured. Each draw disturbs its readings by one draw of
-/// every input, from what is told of it alone, and calibrates them anew: noise of each frame, monitor, placing, zeros and
-/// repeatability through the true surface, exposure offset, linearity, lamp, darks, certificate and shape through the
-/// light of the reference. Nothing is linearised here, and no sensitivity of the code under test is asked for, but for
-/// components that stand for what the scan does not say (unresolved slopes, table between nodes). Errors: `calibrate`.
+/// every input, from what is told of it alone, and calibrates them anew: noise of each frame, monitor, placing, zeros
+/// and repeatability through the true surface, exposure offset, linearity, lamp, darks, certificate and shape through
+/// the light of the reference. Nothing is linearised here, and no sensitivity of the code under test is asked for, but
+/// for components that stand for what the scan does not say (unresolved slopes, table between nodes). Errors:
+/// `calibrate`.
 [[nodiscard]] Result<BudgetComparison> compare_budget(const PreparedScene& scene, int draws, std::uint64_t seed,
                                                       int threads);
 

@@ -1,5 +1,5 @@
-// The budget by formula beside a Monte Carlo of its inputs. The long form demands 3 % with 20000 draws; here fewer draws
-// have their own three standard errors on top.
+// The budget by formula beside a Monte Carlo of its inputs. The long form demands 3 % with 20000 draws; here fewer
+// draws have their own three standard errors on top.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,15 +8,17 @@
 #include "tests/coverage/budget_monte_carlo.h"
 
 namespace gonio::coverage {
+
+// Found by gtest beside the types.
+void PrintTo(const CoverageScene& c, std::ostream* out) {
+  *out << c.name;
+}
+
 namespace {
 
 constexpr double kAgreement = 0.03;
 constexpr int kDraws = 800;
 constexpr std::uint64_t kSeed = 77'000'000;
-
-void PrintTo(const CoverageScene& c, std::ostream* out) {
-  *out << c.name;
-}
 
 class BudgetByMonteCarlo : public testing::TestWithParam<CoverageScene> {};
 

@@ -1,6 +1,6 @@
 // coverage_campaign DIR [REPETITIONS [DRAWS [SCENE...]]]: the long form of the coverage test. Writes DIR/scenes.md,
-// no-certificate.md, left-out.md and budget.md, tables for docs/uncertainty.md, and coverage.tsv for its plot. Ends with
-// 1 when a claim that should hold does not. All chance comes from fixed seeds: the same numbers on any machine.
+// no-certificate.md, left-out.md and budget.md, tables for docs/uncertainty.md, and coverage.tsv for its plot. Ends
+// with 1 when a claim that should hold does not. All chance comes from fixed seeds: the same numbers on any machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,8 +73,8 @@ class LongForm {
     const auto prepared = prepare(scene, without_certificate);
     if (!prepared) return refuse(prepared.error());
     points_ = prepared->points.size();
-    const auto outcomes = run_campaign(
-        *prepared, {.repetitions = arguments_.repetitions, .threads = threads_, .left_out = left_out});
+    const auto outcomes =
+        run_campaign(*prepared, {.repetitions = arguments_.repetitions, .threads = threads_, .left_out = left_out});
     if (!outcomes) return refuse(outcomes.error());
     return figures_of(*outcomes);
   }
@@ -108,10 +108,11 @@ class LongForm {
   }
 
   void compare_with_truth() {
-    Table with(arguments_.folder + "/scenes.md",
-               "scene | points | held [%] | s.e. | rho_dh held [%] | RMS z: theta_r < 30 | < 60 | from 60 | lobe | near "
-               "zero | U/2 over RMS error | median U/f [%] | refused [%] | the claim",
-               14);
+    Table with(
+        arguments_.folder + "/scenes.md",
+        "scene | points | held [%] | s.e. | rho_dh held [%] | RMS z: theta_r < 30 | < 60 | from 60 | lobe | near "
+        "zero | U/2 over RMS error | median U/f [%] | refused [%] | the claim",
+        14);
     std::vector<CoverageFigures> first;
     for (const CoverageScene& scene : scenes_) {
       const CoverageFigures& f = first.emplace_back(measure(scene, false, std::nullopt));
@@ -120,10 +121,11 @@ class LongForm {
                              points_, 100.0 * f.held.value, 100.0 * f.held.standard_error, 100.0 * f.rho_held.value,
                              strata(f), f.width, 100.0 * f.relative_expanded, 100.0 * f.refused, word));
     }
-    Table without(arguments_.folder + "/no-certificate.md",
-                  "scene | held [%] | s.e. | rho_dh held [%] | RMS z: theta_r < 30 | < 60 | from 60 | lobe | near zero | "
-                  "U/2 over RMS error | median U/f [%] | the claim",
-                  12);
+    Table without(
+        arguments_.folder + "/no-certificate.md",
+        "scene | held [%] | s.e. | rho_dh held [%] | RMS z: theta_r < 30 | < 60 | from 60 | lobe | near zero | "
+        "U/2 over RMS error | median U/f [%] | the claim",
+        12);
     for (std::size_t n = 0; n < scenes_.size(); ++n) {
       const CoverageFigures f = measure(scenes_[n], true, std::nullopt);
       const std::string word = verdict(scenes_[n], f, true);

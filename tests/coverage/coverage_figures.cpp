@@ -39,16 +39,16 @@ std::int64_t key_of(Angle a) {
 std::map<std::int64_t, std::vector<std::pair<const calibration::CalibratedPoint*, double>>> weights_of(
     const calibration::CalibratedScan& scan) {
   std::map<std::int64_t, std::map<std::int64_t, std::vector<const calibration::CalibratedPoint*>>> rings;
-  for (const auto& point : scan.points) rings[key_of(point.geometry.theta_i)][key_of(point.geometry.theta_r)].push_back(&point);
+  for (const auto& point : scan.points)
+    rings[key_of(point.geometry.theta_i)][key_of(point.geometry.theta_r)].push_back(&point);
   std::map<std::int64_t, std::vector<std::pair<const calibration::CalibratedPoint*, double>>> weights;
   for (const auto& [theta_i, by_theta_r] : rings) {
     for (auto ring = by_theta_r.begin(); ring != by_theta_r.end(); ++ring) {
-      const auto edge = [&](auto a, auto b) {
-        return degrees(0.05 * static_cast<double>(a->first + b->first)).si();
-      };
+      const auto edge = [&](auto a, auto b) { return degrees(0.05 * static_cast<double>(a->first + b->first)).si(); };
       const auto next = std::next(ring);
       const double low = ring == by_theta_r.begin() ? 0.0 : edge(std::prev(ring), ring);
-      const double high = next == by_theta_r.end() ? degrees(0.1 * static_cast<double>(ring->first)).si() : edge(ring, next);
+      const double high =
+          next == by_theta_r.end() ? degrees(0.1 * static_cast<double>(ring->first)).si() : edge(ring, next);
       const double projected = std::numbers::pi * (square(std::sin(high)) - square(std::sin(low)));
       for (const auto* point : ring->second) {
         weights[theta_i].emplace_back(point, projected / static_cast<double>(ring->second.size()));

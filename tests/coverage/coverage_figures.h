@@ -62,13 +62,13 @@ struct StratumFigures {
 
 struct CoverageFigures {
   int repetitions = 0;
-  Share held;                  ///< of the points' intervals
-  Share rho_held;              ///< of those of rho_dh
+  Share held;      ///< of the points' intervals
+  Share rho_held;  ///< of those of rho_dh
   double rms_z = 0.0;
   double rho_rms_z = 0.0;
-  double width = 0.0;          ///< mean(U/2) / RMS(value - truth), mean over the points
-  double rho_width = 0.0;      ///< the same for rho_dh
-  double least_point = 0.0;    ///< share held of the worst point
+  double width = 0.0;              ///< mean(U/2) / RMS(value - truth), mean over the points
+  double rho_width = 0.0;          ///< the same for rho_dh
+  double least_point = 0.0;        ///< share held of the worst point
   double relative_expanded = 0.0;  ///< median of U/|f| over points, of their means
   double refused = 0.0;            ///< share of the planned points
   std::map<ErrorCode, std::size_t> refused_for;
@@ -88,8 +88,8 @@ struct Claim {
   [[nodiscard]] static Claim for_few(int repetitions);
 };
 
-/// Every part of the claim that the figures do not meet, in words with numbers; empty when it holds. A stratum with less
-/// than one value in two repetitions has too few to be judged.
+/// Every part of the claim that the figures do not meet, in words with numbers; empty when it holds. A stratum with
+/// less than one value in two repetitions has too few to be judged.
 [[nodiscard]] std::vector<std::string> failures(const CoverageFigures& figures, const Claim& claim);
 
 }  // namespace gonio::coverage

@@ -22,9 +22,9 @@ struct CoverageScene {
   std::string file;  ///< of sim/scenes, without its ending
   std::uint64_t first_seed = 0;
   ScanPlan plan{};
-  bool has_lobe = false;                                    ///< its points above half of the largest truth are a stratum
-  std::function<void(sim::Scene&)> bend{};                  ///< once, before any repetition
-  std::function<void(sim::Scene&, sim::Chance&)> draw{};    ///< each repetition, beside what `sim::Truth` draws
+  bool has_lobe = false;                                  ///< its points above half of the largest truth are a stratum
+  std::function<void(sim::Scene&)> bend{};                ///< once, before any repetition
+  std::function<void(sim::Scene&, sim::Chance&)> draw{};  ///< each repetition, beside what `sim::Truth` draws
   std::function<void(calibration::InstrumentModel&)> tell{};  ///< once, on top of `ShortScan::stated_model`
   /// Not empty: the claim does not hold here, and why. Its test then demands that it does not.
   std::string fails_for{};

@@ -13,6 +13,15 @@ using calibration::InstrumentModel;
 using sim::Chance;
 using sim::Scene;
 
+// Standard uncertainties of leans and heights; half angles of the cones; radii of spot and field, relative u.
+constexpr Angle kLean = degrees(0.1);
+constexpr Length kHeight = millimetres(0.3);
+constexpr Angle kCone = degrees(3.0);
+constexpr Angle kUCone = degrees(0.1);
+constexpr Length kSpot = millimetres(10.0);
+constexpr Length kField = millimetres(3.0);
+constexpr double kRelative = 0.005;
+
 ScanPlan small_plan() {
   ScanPlan plan;
   plan.theta_i_deg = {15.0, 50.0};
@@ -163,18 +172,18 @@ void add_detector_scenes(std::vector<CoverageScene>& list) {
                       }});
   constexpr double kT0 = 4e-4;
   constexpr double kUT0 = 5e-5;
-  list.push_back({.name = "exposure_offset",
-                  .what = "shutter open 0.4 ms longer than it says, known to 0.05 ms",
-                  .file = "dark",
-                  .first_seed = 17'000'000,
-                  .bend =
-                      [](Scene& s) {
-                        brighten(s, 100.0);
-                        s.told.exposure_offset_s = kT0;
-                        s.told.u_exposure_offset_s = kUT0;
-                      },
-                  .draw = [](Scene& s,
-                             Chance& chance) { s.effects.exposure_offset_s = kT0 + kUT0 * chance.normal(); }});
+  list.push_back(
+      {.name = "exposure_offset",
+       .what = "shutter open 0.4 ms longer than it says, known to 0.05 ms",
+       .file = "dark",
+       .first_seed = 17'000'000,
+       .bend =
+           [](Scene& s) {
+             brighten(s, 100.0);
+             s.told.exposure_offset_s = kT0;
+             s.told.u_exposure_offset_s = kUT0;
+           },
+       .draw = [](Scene& s, Chance& chance) { s.effects.exposure_offset_s = kT0 + kUT0 * chance.normal(); }});
   ScanPlan frames = small_plan();
   frames.detector = DetectorKind::Frames;
   frames.dark_frames = 1;
@@ -224,8 +233,6 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                     s.angles.u_zero_theta_i = s.angles.u_zero_theta_r = s.angles.u_zero_phi_r = degrees(0.1);
                     s.angles.u_repeat = degrees(0.02);
                   }});
-  constexpr Angle kLean = degrees(0.1);
-  constexpr Length kHeight = millimetres(0.3);
   list.push_back({.name = "tilted",
                   .what = "sample and reference askew by 0.1 deg, 0.3 mm high or low",
                   .file = "wheat",
@@ -247,23 +254,22 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                           mount->height.u = kHeight;
                         }
                       }});
-  constexpr Angle kCone = degrees(3.0);
-  constexpr Angle kUCone = degrees(0.1);
-  list.push_back({.name = "wide_cones",
-                  .what = "source and detector of 3 deg half angle, known to 0.1 deg",
-                  .file = "wheat",
-                  .first_seed = 24'000'000,
-                  .plan = small_plan(),
-                  .draw =
-                      [](Scene& s, Chance& chance) {
-                        s.effects.cones = {.source_half = kCone + kUCone * chance.normal(),
-                                           .detector_half = kCone + kUCone * chance.normal(),
-                                           .tolerance = 1e-4};
-                      },
-                  .tell =
-                      [](InstrumentModel& m) {
-                        m.cones = {.source_half = {kCone, kUCone}, .detector_half = {kCone, kUCone}};
-                      }});
+  list.push_back(
+      {.name = "wide_cones",
+       .what = "source and detector of 3 deg half angle, known to 0.1 deg",
+       .file = "wheat",
+       .first_seed = 24'000'000,
+       .plan = small_plan(),
+       .draw =
+           [](Scene& s, Chance& chance) {
+             s.effects.cones = sim::ConeSpec{.source_half = kCone + kUCone * chance.normal(),
+                                             .detector_half = kCone + kUCone * chance.normal(),
+                                             .tolerance = 1e-4};
+           },
+       .tell =
+           [](InstrumentModel& m) {
+             m.cones = calibration::ConeModel{.source_half = {kCone, kUCone}, .detector_half = {kCone, kUCone}};
+           }});
 }
 
 void add_stray_scenes(std::vector<CoverageScene>& list) {
@@ -276,7 +282,8 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                   .has_lobe = true,
                   .draw =
                       [](Scene& s, Chance& chance) {
-                        s.effects.polarisation = {.source_degree = kDegree,
+                        s.effects.polarisation =
+                            sim::PolarisationSpec{.source_degree = kDegree,
                                                   .source_plane = degrees(180.0 * chance.uniform()),
                                                   .detector_diattenuation = kDegree,
                                                   .detector_plane = degrees(180.0 * chance.uniform())};
@@ -284,11 +291,11 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                   .tell =
                       [](InstrumentModel& m) {
                         // The deviation of cos(2 angle) for a plane of any angle; the standard depolarises.
-                        m.polarisation = {.source_degree = kDegree,
-                                          .detector_diattenuation = kDegree,
-                                          .u_sample = std::numbers::sqrt2 / 2.0,
-                                          .u_reference = 0.0,
-                                          .sample_index = 1.34};
+                        m.polarisation = calibration::PolarisationModel{.source_degree = kDegree,
+                                                                        .detector_diattenuation = kDegree,
+                                                                        .u_sample = std::numbers::sqrt2 / 2.0,
+                                                                        .u_reference = 0.0,
+                                                                        .sample_index = 1.34};
                       }});
   ScanPlan visited;
   visited.stray_visits = true;
@@ -297,18 +304,14 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                   .file = "dark",
                   .first_seed = 26'000'000,
                   .plan = visited,
-                  .draw =
-                      [](Scene& s, Chance& chance) {
-                        s.effects.stray = {.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
-                                           .source_share = 1e-4 * (1.0 + chance.uniform()),
-                                           .internal_share = 0.0};
-                      }});
+                  .draw = [](Scene& s, Chance& chance) {
+                    s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
+                                                     .source_share = 1e-4 * (1.0 + chance.uniform()),
+                                                     .internal_share = 0.0};
+                  }});
 }
 
 void add_anchor_scenes(std::vector<CoverageScene>& list) {
-  constexpr Length kSpot = millimetres(10.0);
-  constexpr Length kField = millimetres(3.0);
-  constexpr double kRelative = 0.005;
   ScanPlan plan;
   plan.visits = true;
   plan.reference_mode = calibration::ReferenceMode::Anchor;
@@ -319,10 +322,11 @@ void add_anchor_scenes(std::vector<CoverageScene>& list) {
                   .plan = plan,
                   .draw =
                       [](Scene& s, Chance& chance) {
-                        s.effects.overlap = sim::OverlapSpec{.spot_radius = kSpot * (1.0 + kRelative * chance.normal()),
-                                                             .field_radius = kField * (1.0 + kRelative * chance.normal()),
-                                                             .sample_radius = std::nullopt,
-                                                             .reference_radius = std::nullopt};
+                        s.effects.overlap =
+                            sim::OverlapSpec{.spot_radius = kSpot * (1.0 + kRelative * chance.normal()),
+                                             .field_radius = kField * (1.0 + kRelative * chance.normal()),
+                                             .sample_radius = std::nullopt,
+                                             .reference_radius = std::nullopt};
                       },
                   .tell =
                       [](InstrumentModel& m) {

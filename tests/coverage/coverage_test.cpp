@@ -12,14 +12,20 @@
 #include "tests/coverage/campaign.h"
 
 namespace gonio::coverage {
+
+// Found by gtest beside the types.
+void PrintTo(const CoverageScene& c, std::ostream* out) {
+  *out << c.name;
+}
+
+void PrintTo(const LeftOutCase& c, std::ostream* out) {
+  *out << correction_name(c.correction);
+}
+
 namespace {
 
 constexpr int kRepetitions = 300;
 constexpr int kThreads = 2;
-
-void PrintTo(const CoverageScene& c, std::ostream* out) {
-  *out << c.name;
-}
 
 CoverageFigures measured(const CoverageScene& scene, bool without_certificate,
                          std::optional<Correction> left_out = std::nullopt) {
@@ -94,10 +100,6 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CoverageWithoutCertificate,
                          testing::ValuesIn(scenes_named({"lambertian", "wheat", "glint", "shape", "drifted_lamp"})),
                          name_of);
 
-void PrintTo(const LeftOutCase& c, std::ostream* out) {
-  *out << correction_name(c.correction);
-}
-
 class CoverageWithoutACorrection : public testing::TestWithParam<LeftOutCase> {};
 
 TEST_P(CoverageWithoutACorrection, IsFoundOut) {
@@ -111,8 +113,7 @@ TEST_P(CoverageWithoutACorrection, IsFoundOut) {
   std::printf("without %s:%s\n", correction_name(GetParam().correction), lines_of(found).c_str());
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, CoverageWithoutACorrection,
-                         testing::ValuesIn(left_out_cases()),
+INSTANTIATE_TEST_SUITE_P(Each, CoverageWithoutACorrection, testing::ValuesIn(left_out_cases()),
                          [](const testing::TestParamInfo<LeftOutCase>& test) {
                            std::string name = correction_name(test.param.correction);
                            std::ranges::replace(name, ' ', '_');

@@ -50,8 +50,8 @@ calibration::InstrumentModel ShortScan::stated_model(const sim::Scene& scene, co
   if (plan.detector == DetectorKind::Radiometer) {
     model.detector.full_scale_dn = 1.0;
     model.detector.u_linearity = plan.meter.u_linearity;
-    model.detector.power = calibration::PowerModel{
-        .noise = plan.meter.noise, .u_range = plan.meter.u_range, .u_zero = plan.meter.u_zero};
+    model.detector.power =
+        calibration::PowerModel{.noise = plan.meter.noise, .u_range = plan.meter.u_range, .u_zero = plan.meter.u_zero};
   }
   return model;
 }
@@ -156,12 +156,10 @@ void ShortScan::visit_standard(const sim::ReadingLevel& instrument) {
   const PlannedPoint& point = *std::ranges::min_element(points_, {}, from_0_45);
   RawReading& reading = begin(Target::Reference);
   reading.visited_point = point.index;
-  add_frames(instrument,
-             {.target = sim::Station::Reference,
-              .encoders = point.geometry,
-              .wavelength = plan_.wavelength,
-              .move = moves_},
-             reading);
+  add_frames(
+      instrument,
+      {.target = sim::Station::Reference, .encoders = point.geometry, .wavelength = plan_.wavelength, .move = moves_},
+      reading);
 }
 
 void ShortScan::visit_stray(const sim::ReadingLevel& instrument) {
