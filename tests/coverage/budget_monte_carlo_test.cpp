@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "tests/coverage/budget_monte_carlo.h"
 
@@ -17,7 +18,7 @@ void PrintTo(const CoverageScene& c, std::ostream* out) {
 namespace {
 
 constexpr double kAgreement = 0.03;
-constexpr int kDraws = 800;
+constexpr int kDraws = 1500;
 constexpr std::uint64_t kSeed = 77'000'000;
 
 class BudgetByMonteCarlo : public testing::TestWithParam<CoverageScene> {};
@@ -36,7 +37,13 @@ TEST_P(BudgetByMonteCarlo, AgreesWithTheFormula) {
   EXPECT_NEAR(compared->ratio, 1.0, kAgreement + 3.0 * compared->standard_error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BudgetByMonteCarlo, testing::ValuesIn(coverage_scenes()),
+std::vector<CoverageScene> sound_scenes() {
+  std::vector<CoverageScene> scenes = coverage_scenes();
+  std::erase_if(scenes, [](const CoverageScene& scene) { return !scene.fails_for.empty(); });
+  return scenes;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BudgetByMonteCarlo, testing::ValuesIn(sound_scenes()),
                          [](const testing::TestParamInfo<CoverageScene>& test) { return test.param.name; });
 
 }  // namespace

@@ -47,6 +47,16 @@ ScanPlan through_the_mirror_direction() {
   return plan;
 }
 
+// Few readings: an average over cones costs the simulator a thousand evaluations.
+ScanPlan coarse_lobe() {
+  ScanPlan plan;
+  plan.theta_i_deg = {25.0, 30.0, 35.0};
+  plan.theta_r_deg = {20.0, 30.0, 40.0, 50.0};
+  plan.phi_r_deg = {160.0, 180.0};
+  plan.frames = 1;
+  return plan;
+}
+
 ScanPlan through_the_retro_direction() {
   ScanPlan plan;
   plan.theta_i_deg = {25.0, 30.0, 35.0};
@@ -124,12 +134,12 @@ void add_lamp_scenes(std::vector<CoverageScene>& list) {
   blind.monitor_is_blind = blind.visits = true;
   blind.block = 5;
   list.push_back({.name = "unseen_drift",
-                  .what = "20 % an hour, not seen by the monitor, visits of the standard",
+                  .what = "response that drifts by 1.7 % a minute, not seen by the monitor, visits of the standard",
                   .file = "wheat",
                   .first_seed = 14'000'000,
                   .plan = blind,
                   .bend = quiet,
-                  .draw = [](Scene& s, Chance& chance) { s.lamp.drift_per_hour = 0.2 * chance.normal(); }});
+                  .draw = [](Scene& s, Chance& chance) { s.lamp.drift_per_hour = chance.normal(); }});
   ScanPlan stepping = blind;
   stepping.step = 0.01;
   list.push_back({.name = "unseen_steps",
@@ -169,7 +179,8 @@ void add_detector_scenes(std::vector<CoverageScene>& list) {
                         m.detector.linearity.covariance[0] = kUBend * kUBend;
                         m.detector.linearity.covariance[3] = m.detector.linearity.covariance[12] = both;
                         m.detector.linearity.covariance[15] = kUOffset * kUOffset;
-                      }});
+                      },
+                  .fails_for = "the curve of the linearity is not applied yet"});
   constexpr double kT0 = 4e-4;
   constexpr double kUT0 = 5e-5;
   list.push_back(
@@ -253,23 +264,26 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                           mount->lean_0.u = mount->lean_90.u = kLean;
                           mount->height.u = kHeight;
                         }
-                      }});
+                      },
+                  .fails_for = "tilt and height of a mount are not in the budget yet"});
   list.push_back(
       {.name = "wide_cones",
-       .what = "source and detector of 3 deg half angle, known to 0.1 deg",
-       .file = "wheat",
+       .what = "glint; source and detector of 3 deg half angle, known to 0.1 deg",
+       .file = "glint",
        .first_seed = 24'000'000,
-       .plan = small_plan(),
+       .plan = coarse_lobe(),
+       .has_lobe = true,
        .draw =
            [](Scene& s, Chance& chance) {
              s.effects.cones = sim::ConeSpec{.source_half = kCone + kUCone * chance.normal(),
                                              .detector_half = kCone + kUCone * chance.normal(),
-                                             .tolerance = 1e-4};
+                                             .tolerance = 3e-4};
            },
        .tell =
            [](InstrumentModel& m) {
              m.cones = calibration::ConeModel{.source_half = {kCone, kUCone}, .detector_half = {kCone, kUCone}};
-           }});
+           },
+       .fails_for = "the average over the cones is not corrected yet"});
 }
 
 void add_stray_scenes(std::vector<CoverageScene>& list) {
@@ -296,7 +310,8 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                                                                         .u_sample = std::numbers::sqrt2 / 2.0,
                                                                         .u_reference = 0.0,
                                                                         .sample_index = 1.34};
-                      }});
+                      },
+                  .fails_for = "polarisation is not in the budget yet"});
   ScanPlan visited;
   visited.stray_visits = true;
   list.push_back({.name = "stray",
@@ -304,11 +319,13 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                   .file = "dark",
                   .first_seed = 26'000'000,
                   .plan = visited,
-                  .draw = [](Scene& s, Chance& chance) {
-                    s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
-                                                     .source_share = 1e-4 * (1.0 + chance.uniform()),
-                                                     .internal_share = 0.0};
-                  }});
+                  .draw =
+                      [](Scene& s, Chance& chance) {
+                        s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
+                                                         .source_share = 1e-4 * (1.0 + chance.uniform()),
+                                                         .internal_share = 0.0};
+                      },
+                  .fails_for = "visits of ambient and stray light are not subtracted yet"});
 }
 
 void add_anchor_scenes(std::vector<CoverageScene>& list) {
@@ -333,7 +350,8 @@ void add_anchor_scenes(std::vector<CoverageScene>& list) {
                         auto& overlap = m.overlap.emplace();
                         overlap.spot_radius = {kSpot, kSpot * kRelative};
                         overlap.field_radius = {kField, kField * kRelative};
-                      }});
+                      },
+                  .fails_for = "the standard at one geometry is not calibrated yet"});
 }
 
 }  // namespace

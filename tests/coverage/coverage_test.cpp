@@ -113,7 +113,13 @@ TEST_P(CoverageWithoutACorrection, IsFoundOut) {
   std::printf("without %s:%s\n", correction_name(GetParam().correction), lines_of(found).c_str());
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, CoverageWithoutACorrection, testing::ValuesIn(left_out_cases()),
+std::vector<LeftOutCase> cases_of_sound_scenes() {
+  std::vector<LeftOutCase> cases = left_out_cases();
+  std::erase_if(cases, [](const LeftOutCase& c) { return !scenes_named({c.scene}).front().fails_for.empty(); });
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, CoverageWithoutACorrection, testing::ValuesIn(cases_of_sound_scenes()),
                          [](const testing::TestParamInfo<LeftOutCase>& test) {
                            std::string name = correction_name(test.param.correction);
                            std::ranges::replace(name, ' ', '_');
