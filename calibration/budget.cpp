@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "calibration/coverage_interval.h"
+
 namespace gonio::calibration {
 namespace {
 
@@ -15,24 +17,30 @@ double square(double x) {
   return x * x;
 }
 
-// Ascending by component; stable, so that sums have one order whatever the sort.
+// Ascending by component; equal ones keep their order, so that sums have one order. Most lists come sorted but for a
+// few terms.
 void sort_terms(std::vector<BudgetTerm>& terms) {
-  std::ranges::stable_sort(terms, {}, &BudgetTerm::component);
+  for (std::size_t n = 1; n < terms.size(); ++n) {
+    const BudgetTerm term = terms[n];
+    std::size_t place = n;
+    for (; place > 0 && terms[place - 1].component > term.component; --place) terms[place] = terms[place - 1];
+    terms[place] = term;
+  }
 }
 
 template <class Add>
-std::vector<BudgetTerm> merged(std::vector<BudgetTerm> terms, Add add) {
+void merge_terms(std::vector<BudgetTerm>& terms, Add add) {
   sort_terms(terms);
-  std::vector<BudgetTerm> once;
-  for (const BudgetTerm& term : terms) {
-    if (!once.empty() && once.back().component == term.component) {
-      once.back().per_sd = add(once.back().per_sd, term.per_sd);
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < terms.size(); ++n) {
+    if (kept > 0 && terms[kept - 1].component == terms[n].component) {
+      terms[kept - 1].per_sd = add(terms[kept - 1].per_sd, terms[n].per_sd);
     } else {
-      once.push_back(term);
+      terms[kept++] = terms[n];
     }
   }
-  std::erase_if(once, [](const BudgetTerm& term) { return term.per_sd == Brdf{}; });
-  return once;
+  terms.resize(kept);
+  std::erase_if(terms, [](const BudgetTerm& term) { return term.per_sd == Brdf{}; });
 }
 
 double sum_of_squares(const std::vector<BudgetTerm>& terms) {
@@ -71,12 +79,26 @@ double share_within(double t, double nu) {
   return incomplete_beta(t * t / (nu + t * t), 0.5, 0.5 * nu);
 }
 
+// Student's t at the level, as a series in 1 / nu about the normal z (Abramowitz and Stegun 1964, 26.7.5).
+double series_of_t(double nu) {
+  constexpr double kNormal = 2.0000024438996;  // of 0.9545; the tables' 2.000
+  const double z = kNormal;
+  const double z2 = z * z;
+  const double g1 = z * (z2 + 1.0) / 4.0;
+  const double g2 = z * ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
+  const double g3 = z * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
+  const double g4 = z * ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
+  return z + (g1 + (g2 + (g3 + g4 / nu) / nu) / nu) / nu;
+}
+
 }  // namespace
 
 double coverage_factor(double degrees_of_freedom) {
   assert(degrees_of_freedom > 0.0);
   constexpr double kAsGoodAsInfinite = 1e5;  // there k differs from its limit by 3e-5
   if (degrees_of_freedom > kAsGoodAsInfinite) return 2.0;
+  constexpr double kSeries = 200.0;  // there the series is good to 1e-11
+  if (degrees_of_freedom > kSeries) return series_of_t(degrees_of_freedom);
   double low = 2.0;
   double high = 4.0;
   while (share_within(high, degrees_of_freedom) < kLevel && high < 1e9) high *= 2.0;
@@ -87,18 +109,24 @@ double coverage_factor(double degrees_of_freedom) {
   return 0.5 * (low + high);
 }
 
-Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
-                   std::vector<BudgetTerm> shared) {
+Budget make_budget_in_place(std::span<const Component> components, std::vector<BudgetTerm>& random,
+                            std::vector<BudgetTerm>& shared) {
+  merge_terms(random, [](Brdf a, Brdf b) { return Brdf::from_si(std::hypot(a.si(), b.si())); });
+  merge_terms(shared, [](Brdf a, Brdf b) { return a + b; });
   Budget budget;
-  budget.random = merged(std::move(random), [](Brdf a, Brdf b) { return Brdf::from_si(std::hypot(a.si(), b.si())); });
-  budget.shared = merged(std::move(shared), [](Brdf a, Brdf b) { return a + b; });
+  budget.random.assign(random.begin(), random.end());
+  budget.shared.assign(shared.begin(), shared.end());
   const double random2 = sum_of_squares(budget.random);
   const double shared2 = sum_of_squares(budget.shared);
   const double u = std::sqrt(random2 + shared2);
-  double sum4 = 0.0;  // of u_i^4 / nu_i
+  double sum4 = 0.0;       // of u_i^4 / nu_i
+  double rectangle = 0.0;  // the largest
   for (const auto* terms : {&budget.random, &budget.shared}) {
     for (const BudgetTerm& term : *terms) {
-      sum4 += square(square(term.per_sd.si())) / components[term.component].degrees_of_freedom;
+      const Component& component = components[term.component];
+      const double size2 = square(term.per_sd.si());
+      if (!std::isinf(component.degrees_of_freedom)) sum4 += square(size2) / component.degrees_of_freedom;
+      if (component.distribution == Distribution::Rectangular) rectangle = std::max(rectangle, size2);
     }
   }
   if (sum4 > 0.0) budget.degrees_of_freedom = square(square(u)) / sum4;
@@ -106,8 +134,18 @@ Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm
   budget.u_shared = per_steradian(std::sqrt(shared2));
   budget.u = per_steradian(u);
   budget.k = coverage_factor(budget.degrees_of_freedom);
+  const double rest = random2 + shared2 - rectangle;
+  if (rectangle > 0.25 * rest) {
+    budget.k *= coverage_factor_with_rectangle(std::sqrt(rectangle / std::max(rest, 1e-12 * rectangle))) / 2.0;
+  }
   budget.expanded = budget.k * budget.u;
+  budget.below = budget.above = budget.expanded;
   return budget;
+}
+
+Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
+                   std::vector<BudgetTerm> shared) {
+  return make_budget_in_place(components, random, shared);
 }
 
 Measured<Brdf> weighted_sum(std::span<const SumTerm> terms) {

@@ -62,6 +62,10 @@ struct Budget {
 [[nodiscard]] Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
                                  std::vector<BudgetTerm> shared);
 
+/// The same; both lists are left sorted and merged, for use again.
+[[nodiscard]] Budget make_budget_in_place(std::span<const Component> components, std::vector<BudgetTerm>& random,
+                                          std::vector<BudgetTerm>& shared);
+
 /// k for a level of confidence of 95.45 %: Student's t at p = 0.9545 for `degrees_of_freedom` > 0 (JCGM 100:2008, table
 /// G.2; it need not be whole), 2.000 for infinity.
 [[nodiscard]] double coverage_factor(double degrees_of_freedom);

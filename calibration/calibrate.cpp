@@ -4,151 +4,257 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <map>
-#include <tuple>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "calibration/component_table.h"
-#include "calibration/dark_history.h"
+#include "calibration/cone_correction.h"
 #include "calibration/direction_slopes.h"
-#include "calibration/drift_history.h"
-#include "calibration/normalised_reading.h"
+#include "calibration/monte_carlo.h"
+#include "calibration/parallel_blocks.h"
 #include "calibration/point_budget.h"
+#include "calibration/point_equation.h"
+#include "calibration/reading_pairs.h"
+#include "calibration/scan_histories.h"
+#include "calibration/spectral_term.h"
+#include "calibration/term_list.h"
 
 namespace gonio::calibration {
 namespace {
 
-struct Readings {
-  const RawReading* sample = nullptr;
-  const RawReading* reference = nullptr;
-};
+// Part of the result: components are numbered by block, so that no bit depends on who worked on which.
+constexpr std::size_t kPointsInBlock = 4096;
 
-/// Where the standard, which is isotropic, gives the same reading: wavelength, thetas, |dphi|.
-using StandardPlace = std::tuple<std::int64_t, std::int64_t, std::int64_t, std::int64_t>;
-
-StandardPlace place_of(const PlannedPoint& point) {
-  const auto key = [](Angle a) { return std::llround(in_degrees(a) * 1e3); };
-  const Geometry& g = point.geometry;
-  const std::int64_t dphi = std::abs(key(wrapped(g.phi_r - g.phi_i)));
-  const bool at_pole = key(g.theta_i) == 0 || key(g.theta_r) == 0;
-  return {std::llround(in_nanometres(point.wavelength) * 1e3), key(g.theta_i), key(g.theta_r), at_pole ? 0 : dphi};
+std::size_t blocks_of(std::size_t points) {
+  return (points + kPointsInBlock - 1) / kPointsInBlock;
 }
 
-/// Which readings make which point.
-class Pairing {
- public:
-  explicit Pairing(const ScanReadings& scan) {
-    for (const RawReading& reading : scan.readings) {
-      if (!reading.point_index || reading.target == Target::Dark) continue;
-      Readings& readings = by_point_[*reading.point_index];
-      (reading.target == Target::Sample ? readings.sample : readings.reference) = &reading;
-    }
-    for (const PlannedPoint& point : scan.points) {
-      if (const RawReading* own = of(point).reference) by_place_.try_emplace(place_of(point), own);
-    }
-    for (const PlannedPoint& point : scan.points) {
-      if (of(point).sample == nullptr) continue;
-      if (const RawReading* reference = reference_of(point)) ++uses_[reference->id];
-    }
-  }
-
-  [[nodiscard]] Readings of(const PlannedPoint& point) const {
-    const auto found = by_point_.find(point.index);
-    return found == by_point_.end() ? Readings{} : found->second;
-  }
-  /// Its own, or another point's of the same place, or null.
-  [[nodiscard]] const RawReading* reference_of(const PlannedPoint& point) const {
-    if (const RawReading* own = of(point).reference) return own;
-    const auto found = by_place_.find(place_of(point));
-    return found == by_place_.end() ? nullptr : found->second;
-  }
-  [[nodiscard]] bool is_shared(std::int64_t reference_id) const { return uses_.at(reference_id) > 1; }
-
- private:
-  std::map<std::int32_t, Readings> by_point_;
-  std::map<StandardPlace, const RawReading*> by_place_;
-  std::map<std::int64_t, int> uses_;
-};
-
-Error no_ratio(const PlannedPoint& point, std::string seen, std::string limit) {
+Error no_reference(const PlannedPoint& point) {
   return {.code = ErrorCode::IncompleteData,
           .device = "detector",
           .tried = fmt::format("calibrate point {}", point.index),
-          .seen = std::move(seen),
-          .limit = std::move(limit)};
+          .seen = "no reference reading",
+          .limit = "one at the same geometry and wavelength"};
 }
 
-/// What all readings of a scan are seen by.
-struct Histories {
-  DarkHistory darks;
-  std::optional<DriftHistory> drift;
+/// The scan on its way: points that have a pair of readings, and what is made of them.
+struct Draft {
+  std::vector<PairedPoint> pairs;
+  std::vector<CalibratedPoint> points;  ///< as many
+  std::vector<SlopePoint> places;       ///< as many
+  std::vector<bool> borrowed;           ///< as many
+  std::vector<RefusedPoint> refused;
 };
 
-Result<PairedPoint> make_pair(const PlannedPoint& point, const RawReading& sample, const RawReading& reference,
-                              const Histories& histories, const DetectorModel& detector,
-                              const ReferenceStandard& standard) {
-  const DarkHistory& darks = histories.darks;
-  auto q_sample = normalise(sample, darks, detector);
-  if (!q_sample) return failure(std::move(q_sample).error());
-  auto q_reference = normalise(reference, darks, detector);
-  if (!q_reference) return failure(std::move(q_reference).error());
-  const Geometry& at = q_reference->geometry;
-  GONIO_TRY(standard.check_reach(point.wavelength, at));
-  if (!(q_reference->q > 0.0)) {
-    return failure(no_ratio(point,
-                            fmt::format("reference reading {} of {:.4g} {} net", reference.id, q_reference->mean_net_dn,
-                                        detector.power ? "of its range" : "DN"),
-                            "more than 0"));
+/// All that every point of a scan is made with.
+struct Workshop {
+  const ScanReadings& scan;
+  const InstrumentModel& instrument;
+  const ReferenceStandard& standard;
+  const CalibrationOptions& options;
+  ScanHistories histories;
+  BudgetRules rules;
+
+  Workshop(const ScanReadings& readings, const InstrumentModel& model, const ReferenceStandard& white,
+           const CalibrationOptions& how)
+      : scan(readings),
+        instrument(model),
+        standard(white),
+        options(how),
+        histories(readings, model, how),
+        rules(model, white, histories.has_trap_visits()) {}
+
+  [[nodiscard]] EquationContext equation() const {
+    return {.histories = &histories, .instrument = &instrument, .standard = &standard, .left_out = options.left_out};
   }
-  PairedPoint pair{.sample = std::move(*q_sample),
-                   .reference = std::move(*q_reference),
-                   .reference_id = reference.id,
-                   .wavelength = point.wavelength,
-                   .rho = standard.reflectance(point.wavelength).value()};
-  pair.cosine_ratio = std::cos(pair.reference.geometry.theta_i.si()) / std::cos(pair.sample.geometry.theta_i.si());
-  if (histories.drift) {
-    pair.sample_drift = histories.drift->at(pair.sample.at);
-    pair.reference_drift = histories.drift->at(pair.reference.at);
-  }
-  if (pair.sample_drift) pair.drift_ratio = pair.reference_drift->level / pair.sample_drift->level;
-  const double f_ref = pair.rho.value * standard.shape(pair.reference.geometry) / std::numbers::pi;
-  pair.dvalue_dq = f_ref * pair.cosine_ratio * pair.drift_ratio / pair.reference.q;
-  pair.value = pair.dvalue_dq * pair.sample.q;
-  return pair;
+};
+
+void keep_pair(const PlannedPoint& point, const ReadingPair& readings, PairedPoint pair, const Workshop& shop,
+               Draft& draft) {
+  draft.points.push_back({.point_index = point.index,
+                          .geometry = pair.sample.geometry,
+                          .wavelength = point.wavelength,
+                          .value = per_steradian(pair.value),
+                          .budget = {},
+                          .sample_reading = readings.sample->id,
+                          .reference_reading = readings.reference->id});
+  draft.places.push_back({.planned = point.geometry,
+                          .reported = pair.sample.geometry,
+                          .wavelength = point.wavelength,
+                          .value = per_steradian(pair.value),
+                          .u_random = scatter(pair, shop.instrument),
+                          .state = static_cast<std::int32_t>(point.polarisation)});
+  draft.borrowed.push_back(readings.is_borrowed);
+  draft.pairs.push_back(std::move(pair));
 }
 
-std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const DirectionSlopes& slopes, bool borrowed) {
+Draft draft_block(const std::vector<ReadingPair>& pairs, std::size_t first, std::size_t last, const Workshop& shop) {
+  Draft draft;
+  draft.pairs.reserve(last - first);
+  draft.points.reserve(last - first);
+  draft.places.reserve(last - first);
+  const EquationContext context = shop.equation();
+  for (std::size_t n = first; n < last; ++n) {
+    const PlannedPoint& point = shop.scan.points[n];
+    if (pairs[n].sample == nullptr) continue;
+    if (pairs[n].reference == nullptr) {
+      draft.refused.push_back({point.index, no_reference(point)});
+      continue;
+    }
+    auto pair = equate(point, pairs[n], context);
+    if (pair) {
+      keep_pair(point, pairs[n], std::move(*pair), shop, draft);
+    } else {
+      draft.refused.push_back({point.index, std::move(pair).error()});
+    }
+  }
+  return draft;
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& from) {
+  to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
+}
+
+Draft draft_scan(const Workshop& shop) {
+  const std::vector<ReadingPair> pairs = pair_readings(shop.scan);
+  std::vector<Draft> blocks(blocks_of(pairs.size()));
+  for_blocks(blocks.size(), shop.options.threads, [&](std::size_t block) {
+    const std::size_t first = block * kPointsInBlock;
+    blocks[block] = draft_block(pairs, first, std::min(pairs.size(), first + kPointsInBlock), shop);
+  });
+  if (blocks.size() == 1) return std::move(blocks.front());
+  Draft all;
+  all.pairs.reserve(pairs.size());
+  all.points.reserve(pairs.size());
+  all.places.reserve(pairs.size());
+  for (Draft& block : blocks) {
+    append(all.pairs, block.pairs);
+    append(all.points, block.points);
+    append(all.places, block.places);
+    append(all.refused, block.refused);
+    all.borrowed.insert(all.borrowed.end(), block.borrowed.begin(), block.borrowed.end());
+    block = {};
+  }
+  return all;
+}
+
+std::vector<SpectralSlope> spectral_slopes_of(const Draft& draft, const InstrumentModel& instrument) {
+  if (!instrument.spectral) return std::vector<SpectralSlope>(draft.pairs.size());
+  std::vector<SpectralPoint> points;
+  for (std::size_t n = 0; n < draft.pairs.size(); ++n) {
+    const PairedPoint& pair = draft.pairs[n];
+    points.push_back({.planned = draft.places[n].planned,
+                      .wavelength = pair.wavelength,
+                      .over_certificate = pair.value / pair.standard.rho.value,
+                      .certificate = pair.standard.rho.value});
+  }
+  return spectral_slopes(points);
+}
+
+bool is_extrapolated(const NormalisedReading& reading) {
+  return std::ranges::any_of(reading.darks, [](const DarkShare& d) { return d.level.is_extrapolated(); });
+}
+
+bool is_drifted(const std::optional<DriftLevel>& drift) {
+  return drift && drift->is_large;
+}
+
+std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const DirectionSlopes& slopes,
+                       const ConeCorrection& cones, bool borrowed) {
   std::uint32_t flags = 0;
   const auto set = [&](PointFlag flag, bool on) { flags |= on ? static_cast<std::uint32_t>(flag) : 0U; };
-  const auto extrapolated = [](const NormalisedReading& reading) {
-    return std::ranges::any_of(reading.darks, [](const DarkShare& d) { return d.level.is_extrapolated(); });
-  };
-  const auto drifted = [](const std::optional<DriftLevel>& drift) { return drift && drift->is_large; };
   constexpr double kLinearUpTo = 0.05;
+  constexpr double kFewRepeats = 10.0;
   set(PointFlag::NearZero, std::abs(pair.value) <= budget.expanded.si());
-  set(PointFlag::DarkExtrapolated, extrapolated(pair.sample) || extrapolated(pair.reference));
+  set(PointFlag::DarkExtrapolated, is_extrapolated(pair.sample) || is_extrapolated(pair.reference));
   set(PointFlag::FewNeighbours, !std::ranges::all_of(slopes.has_neighbours, std::identity{}));
   set(PointFlag::BorrowedReference, borrowed);
-  set(PointFlag::Drifted, drifted(pair.sample_drift) || drifted(pair.reference_drift));
+  set(PointFlag::Drifted, is_drifted(pair.sample_drift) || is_drifted(pair.reference_drift));
   set(PointFlag::UncertainDivisor,
       std::hypot(pair.reference.u_noise, pair.reference.u_monitor) > kLinearUpTo * pair.reference.q);
+  set(PointFlag::InstrumentLimited, cones.is_limited);
+  set(PointFlag::MonteCarlo, budget.method == BudgetMethod::MonteCarlo);
+  set(PointFlag::FewRepeats, budget.degrees_of_freedom < kFewRepeats);
   return flags;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::ranges::sort(values);
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+/// What is known of a scan's neighbourhoods once all of its points have a value.
+struct Neighbourhoods {
+  std::vector<DirectionSlopes> slopes;
+  std::vector<SpectralSlope> spectral;
+};
+
+void finish_point(std::size_t n, const Neighbourhoods& around, const Workshop& shop, Draft& draft, TermList& terms) {
+  PairedPoint& pair = draft.pairs[n];
+  CalibratedPoint& point = draft.points[n];
+  const DirectionSlopes& slopes = around.slopes[n];
+  const ConeCorrection cones = cone_correction(pair, slopes, shop.instrument, shop.standard);
+  if (!shop.options.left_out.cones) pair.value -= cones.bias;
+  point.value = per_steradian(pair.value);
+  terms.clear();
+  shop.rules.add_terms(pair, slopes, cones, around.spectral[n], terms);
+  point.budget = terms.budget();
+  const MonteCarloUse use = shop.options.monte_carlo;
+  const Nonlinearity bent = shop.rules.nonlinearity(pair, slopes);
+  const bool is_needed = use == MonteCarloUse::Always ||
+                         (use == MonteCarloUse::WhereNeeded && needs_monte_carlo(point.budget, terms, bent));
+  if (is_needed) {
+    const std::uint64_t stream =
+        shop.options.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(n) * 0x2545F491ULL;
+    propagate_by_monte_carlo(pair.value, terms, bent, stream, point.budget);
+  }
+  point.flags = flags_of(pair, point.budget, slopes, cones, draft.borrowed[n]);
 }
 
-ScanSummary summarise(const CalibratedScan& scan, const std::vector<PairedPoint>& pairs) {
-  ScanSummary summary{.points = scan.points.size(), .refused = scan.refused.size()};
+// From a block's numbers of the components to the scan's.
+void renumber(Budget& budget, const std::vector<std::uint32_t>& numbers) {
+  for (auto* terms : {&budget.random, &budget.shared}) {
+    for (BudgetTerm& term : *terms) term.component = numbers[term.component];
+    std::ranges::sort(*terms, {}, &BudgetTerm::component);
+  }
+}
+
+std::vector<Component> finish_points(const Neighbourhoods& around, const Workshop& shop, Draft& draft) {
+  const std::size_t size = draft.points.size();
+  const std::size_t blocks = blocks_of(size);
+  std::vector<ComponentTable> tables(blocks);
+  const auto for_points = [&](std::size_t block, const auto& work) {
+    const std::size_t last = std::min(size, (block + 1) * kPointsInBlock);
+    for (std::size_t n = block * kPointsInBlock; n < last; ++n) work(n);
+  };
+  for_blocks(blocks, shop.options.threads, [&](std::size_t block) {
+    TermList terms(tables[block]);
+    for_points(block, [&](std::size_t n) { finish_point(n, around, shop, draft, terms); });
+  });
+  if (blocks == 1) return tables.front().components();
+  ComponentTable all;
+  std::vector<std::vector<std::uint32_t>> numbers;
+  for (const ComponentTable& table : tables) numbers.push_back(all.join(table));
+  for_blocks(blocks, shop.options.threads, [&](std::size_t block) {
+    for_points(block, [&](std::size_t n) { renumber(draft.points[n].budget, numbers[block]); });
+  });
+  return all.components();
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+ScanSummary summarise(const Draft& draft) {
+  ScanSummary summary{.points = draft.points.size(), .refused = draft.refused.size()};
   std::vector<double> absolute;
   std::vector<double> relative;
-  for (const CalibratedPoint& point : scan.points) {
+  absolute.reserve(draft.points.size());
+  relative.reserve(draft.points.size());
+  for (const CalibratedPoint& point : draft.points) {
     absolute.push_back(point.budget.expanded.si());
     if (has(point.flags, PointFlag::NearZero))
       ++summary.near_zero;
@@ -157,55 +263,15 @@ ScanSummary summarise(const CalibratedScan& scan, const std::vector<PairedPoint>
   }
   double chi2 = 0.0;
   double dof = 0.0;
-  for (const PairedPoint& pair : pairs) {
+  for (const PairedPoint& pair : draft.pairs) {
     chi2 += pair.sample.frame_chi2 + pair.reference.frame_chi2;
     dof += pair.sample.frame_dof + pair.reference.frame_dof;
   }
-  summary.median_relative_expanded = median(relative);
   summary.worst_relative_expanded = relative.empty() ? 0.0 : std::ranges::max(relative);
-  summary.median_expanded = per_steradian(median(std::move(absolute)));
+  summary.median_relative_expanded = median(relative);
+  summary.median_expanded = per_steradian(median(absolute));
   summary.frame_chi2_per_dof = dof > 0.0 ? chi2 / dof : 0.0;
   return summary;
-}
-
-/// The scan on its way: points that have a pair of readings, and what is made of them.
-struct Draft {
-  std::vector<PairedPoint> pairs;
-  std::vector<CalibratedPoint> points;  ///< as many
-  std::vector<bool> borrowed;           ///< as many
-  std::vector<SlopePoint> places;       ///< as many
-  std::vector<RefusedPoint> refused;
-};
-
-void add_point(Draft& draft, const PlannedPoint& point, const Pairing& pairing, const Histories& histories,
-               const InstrumentModel& instrument, const ReferenceStandard& standard) {
-  const Readings own = pairing.of(point);
-  if (own.sample == nullptr) return;
-  const RawReading* reference = pairing.reference_of(point);
-  if (reference == nullptr) {
-    draft.refused.push_back(
-        {point.index, no_ratio(point, "no reference reading", "one at the same geometry and wavelength")});
-    return;
-  }
-  auto pair = make_pair(point, *own.sample, *reference, histories, instrument.detector, standard);
-  if (!pair) {
-    draft.refused.push_back({point.index, std::move(pair).error()});
-    return;
-  }
-  pair->reference_is_shared = pairing.is_shared(reference->id);
-  draft.points.push_back({.point_index = point.index,
-                          .geometry = pair->sample.geometry,
-                          .wavelength = point.wavelength,
-                          .value = per_steradian(pair->value),
-                          .sample_reading = own.sample->id,
-                          .reference_reading = reference->id});
-  draft.borrowed.push_back(reference != own.reference);
-  draft.places.push_back({.planned = point.geometry,
-                          .reported = pair->sample.geometry,
-                          .wavelength = point.wavelength,
-                          .value = per_steradian(pair->value),
-                          .u_random = scatter(*pair, instrument)});
-  draft.pairs.push_back(std::move(*pair));
 }
 
 }  // namespace
@@ -246,59 +312,16 @@ Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel
                                  const ReferenceStandard& standard, UtcTime measured_on,
                                  const CalibrationOptions& options) {
   GONIO_TRY(standard.check_date(measured_on));
-  Histories histories{.darks = DarkHistory(scan, instrument.detector), .drift = std::nullopt};
-  if (options.correct_drift) histories.drift.emplace(scan, histories.darks, instrument);
-  const Pairing pairing(scan);
-  Draft draft;
-  for (const PlannedPoint& point : scan.points) add_point(draft, point, pairing, histories, instrument, standard);
-  const std::vector<DirectionSlopes> slopes = direction_slopes(draft.places, scan.isotropic);
-  ComponentTable table;
-  for (std::size_t n = 0; n < draft.points.size(); ++n) {
-    CalibratedPoint& point = draft.points[n];
-    point.budget = point_budget(draft.pairs[n], slopes[n], instrument, standard, table);
-    point.flags = flags_of(draft.pairs[n], point.budget, slopes[n], draft.borrowed[n]);
-  }
+  const Workshop shop(scan, instrument, standard, options);
+  Draft draft = draft_scan(shop);
+  const Neighbourhoods around{.slopes = direction_slopes(draft.places, scan.isotropic, options.threads),
+                              .spectral = spectral_slopes_of(draft, instrument)};
   CalibratedScan calibrated{
-      .components = table.components(), .points = std::move(draft.points), .refused = std::move(draft.refused)};
-  calibrated.summary = summarise(calibrated, draft.pairs);
+      .components = finish_points(around, shop, draft), .points = {}, .refused = {}, .summary = {}};
+  calibrated.summary = summarise(draft);
+  calibrated.points = std::move(draft.points);
+  calibrated.refused = std::move(draft.refused);
   return calibrated;
-}
-
-std::string describe_inputs(const InstrumentModel& instrument, const ReferenceStandard& standard,
-                            const CalibrationOptions& options) {
-  const DetectorModel& d = instrument.detector;
-  const AngleModel& a = instrument.angles;
-  const LampModel& l = instrument.lamp;
-  const Certificate& c = standard.certificate();
-  std::string text = fmt::format("{}\n", kCalibrationCode);
-  if (!options.correct_drift) text += "drift uncorrected\n";
-  const auto line = [&](std::string_view name, std::initializer_list<double> values) {
-    text += name;
-    for (const double value : values) text += fmt::format(" {:.17g}", value);
-    text += '\n';
-  };
-  line("detector", {d.electrons_per_dn, d.read_noise_dn, d.full_scale_dn, d.exposure_offset_s.value,
-                    d.exposure_offset_s.u, d.u_linearity, d.u_dark_drift_dn_per_s});
-  if (d.u_monitor_window > 0.0) line("monitor", {d.u_monitor_window});
-  if (d.power) line("radiometer", {d.power->noise, d.power->u_range, d.power->u_zero});
-  line("angles", {a.u_zero_theta_i.si(), a.u_zero_theta_r.si(), a.u_zero_phi_r.si(), a.u_repeat.si()});
-  line("lamp", {l.u_after_monitor, l.correlation_s, l.u_reproducibility, l.reproducibility_dof});
-  text += fmt::format("standard {} {} {}\n", standard.serial(), c.date, c.expires);
-  line("certificate", {static_cast<double>(c.geometry), c.specular_port.value_or(Angle{}).si(), c.coverage_factor,
-                       c.longest_gap.si()});
-  for (const CertificateEntry& e : c.entries) line("entry", {e.wavelength.si(), e.reflectance, e.u});
-  const ShapeTable& table = standard.table();
-  for (const auto* grid : {&table.theta_i(), &table.theta_r(), &table.phi()}) {
-    text += "grid";
-    for (const Angle angle : *grid) text += fmt::format(" {:.17g}", angle.si());
-    text += "\n";
-  }
-  text += "values";
-  for (const double value : table.values()) text += fmt::format(" {:.17g}", value);
-  text += '\n';
-  for (const ShapeMode& m : standard.modes()) line("mode " + m.name, {static_cast<double>(m.kind), m.u, m.width.si()});
-  line("integral", {standard.u_integral()});
-  return text;
 }
 
 }  // namespace gonio::calibration

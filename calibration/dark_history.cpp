@@ -102,7 +102,7 @@ std::optional<DarkLevel> DarkHistory::at(ExposureRung rung, Instant when) const 
   const auto found = visits_.find(rung);
   if (found == visits_.end()) return std::nullopt;
   const std::vector<DarkVisit>& visits = found->second;
-  const auto next = std::ranges::find_if(visits, [&](const DarkVisit& visit) { return visit.at >= when; });
+  const auto next = std::ranges::lower_bound(visits, when, {}, &DarkVisit::at);
   if (next != visits.begin() && next != visits.end()) {
     const DarkVisit& a = *(next - 1);
     const DarkVisit& b = *next;

@@ -1,306 +1,262 @@
 #include "calibration/direction_slopes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
-#include <iterator>
-#include <map>
 #include <numbers>
-#include <tuple>
-#include <utility>
+#include <optional>
+
+#include "calibration/direction_lines.h"
+#include "calibration/parallel_blocks.h"
 
 namespace gonio::calibration {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;
-constexpr double kFarthest = 0.25 * kHalfTurn;  // a polynomial over more than 45 deg says nothing of a slope
-constexpr double kSamePlace = 2e-4;             // 0.01 deg: closer neighbours give noise over nothing
+constexpr double kFarthest = 0.25 * std::numbers::pi;  // a polynomial over more than 45 deg says nothing of a slope
+constexpr double kSamePlace = 2e-4;                    // 0.01 deg: closer neighbours give noise over nothing
 constexpr std::size_t kNeighboursAtMost = 4;
+constexpr std::size_t kNodesAtMost = kNeighboursAtMost + 1;
 
-std::size_t index_of(DirectionAxis axis) {
+std::size_t axis_index(DirectionAxis axis) {
   return static_cast<std::size_t>(axis);
 }
 
-std::int64_t key_of(Angle a) {
-  return std::llround(in_degrees(a) * 1e3);
-}
-std::int64_t key_of(Wavelength l) {
-  return std::llround(in_nanometres(l) * 1e3);
-}
-
-/// One point as it stands on a line: `sign` says whether its own angle grows along the line or against it.
-struct Stop {
-  double coordinate = 0.0;
-  std::size_t point = 0;
-  double sign = 1.0;
-  bool is_image = false;  ///< of a point that stands elsewhere on the same line itself
-};
-using Line = std::vector<Stop>;
-/// wavelength, the two fixed angles, phi_i where it counts.
-using LineKey = std::tuple<std::int64_t, std::int64_t, std::int64_t, std::int64_t>;
-
-Angle dphi_of(const Geometry& g, bool isotropic) {
-  const Angle d = wrapped(g.phi_r - g.phi_i);
-  return isotropic && d < Angle{} ? -d : d;
-}
-
-/// Sorts points into lines along one of the thetas.
-class ThetaLines {
- public:
-  ThetaLines(std::span<const SlopePoint> points, bool isotropic, DirectionAxis axis)
-      : points_(points), isotropic_(isotropic), moves_i_(axis == DirectionAxis::ThetaI) {
-    for (std::size_t n = 0; n < points.size(); ++n) add(n);
-    add_poles();
-  }
-  [[nodiscard]] std::map<LineKey, Line>& lines() { return lines_; }
-
- private:
-  [[nodiscard]] Angle moving(const Geometry& g) const { return moves_i_ ? g.theta_i : g.theta_r; }
-  [[nodiscard]] Angle fixed(const Geometry& g) const { return moves_i_ ? g.theta_r : g.theta_i; }
-
-  void add(std::size_t n) {
-    const SlopePoint& p = points_[n];
-    const std::int64_t d = key_of(dphi_of(p.planned, isotropic_));
-    const std::int64_t quarter = 90000;
-    const double theta = moving(p.reported).si();
-    const bool other_at_pole = key_of(fixed(p.planned)) == 0;
-    // The opposite half plane: dphi + 180 deg; mirrored, 180 deg - dphi.
-    const bool against = isotropic_ ? d > quarter : d > quarter || d <= -quarter;
-    std::int64_t plane = against ? (d > 0 ? d - 2 * quarter : d + 2 * quarter) : d;
-    if (isotropic_) plane = against ? 2 * quarter - d : d;
-    if (isotropic_ && other_at_pole) plane = 0;
-    const double sign = against && !(isotropic_ && other_at_pole) ? -1.0 : 1.0;
-    const LineKey key{key_of(p.wavelength), key_of(fixed(p.planned)), plane, isotropic_ ? 0 : key_of(p.planned.phi_i)};
-    Line& line = lines_[key];
-    line.push_back({sign * theta, n, sign, false});
-    const bool is_pole = key_of(moving(p.planned)) == 0;
-    if (is_pole) poles_.emplace_back(key, n);
-    // A plane that is its own mirror image continues beyond the normal as it came.
-    const bool is_even = isotropic_ && (other_at_pole || plane == quarter);
-    if (is_even && !is_pole) line.push_back({-sign * theta, n, -sign, true});
-  }
-
-  // A point at the normal lies on every line through it.
-  void add_poles() {
-    for (const auto& [own, n] : poles_) {
-      const auto [wavelength, fixed_angle, plane, phi_i] = own;
-      const auto from = lines_.lower_bound({wavelength, fixed_angle, INT64_MIN, INT64_MIN});
-      for (auto line = from; line != lines_.end(); ++line) {
-        const auto [w, a, other_plane, other_phi_i] = line->first;
-        if (w != wavelength || a != fixed_angle) break;
-        if (other_plane == plane || other_phi_i != phi_i) continue;
-        line->second.push_back({moving(points_[n].reported).si(), n, 1.0, true});
-      }
-    }
-  }
-
-  std::span<const SlopePoint> points_;
-  bool isotropic_;
-  bool moves_i_;
-  std::map<LineKey, Line> lines_;
-  std::vector<std::pair<LineKey, std::size_t>> poles_;
+/// A value as it is to be differentiated: ln f where it stands clear of zero, and f itself.
+struct Ordinate {
+  double f = 0.0;
+  double u = 0.0;
+  double log_f = 0.0;
+  double u_log = 0.0;
+  bool has_logarithm = false;
 };
 
-std::map<LineKey, Line> phi_lines(std::span<const SlopePoint> points, bool isotropic) {
-  std::map<LineKey, Line> lines;
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const Geometry& g = points[n].planned;
-    const double d = dphi_of(points[n].reported, isotropic).si();
-    Line& line =
-        lines[{key_of(points[n].wavelength), key_of(g.theta_i), key_of(g.theta_r), isotropic ? 0 : key_of(g.phi_i)}];
-    // An isotropic sample's own angle is |dphi|: where phi_r - phi_i is negative it grows against it.
-    const double sign =
-        isotropic && wrapped(points[n].reported.phi_r - points[n].reported.phi_i) < Angle{} ? -1.0 : 1.0;
-    line.push_back({d, n, sign, false});
-    if (isotropic) {
-      line.push_back({-d, n, -sign, true});
-      line.push_back({2.0 * kHalfTurn - d, n, -sign, true});
-    } else {
-      line.push_back({d + 2.0 * kHalfTurn, n, sign, true});
-      line.push_back({d - 2.0 * kHalfTurn, n, sign, true});
-    }
+Ordinate ordinate_of(const SlopePoint& p) {
+  constexpr double kClearOfZero = 5.0;  // standard uncertainties: then ln f is normal too
+  Ordinate o{.f = p.value.si(), .u = p.u_random.si()};
+  o.has_logarithm = o.f > kClearOfZero * o.u && o.f > 0.0;
+  if (o.has_logarithm) {
+    o.log_f = std::log(o.f);
+    o.u_log = o.u / o.f;
   }
-  return lines;
+  return o;
 }
 
-// Weights w_j of the derivative at x = 0 of the polynomial through nodes at x_j (Lagrange).
-std::vector<double> derivative_weights(const std::vector<double>& x) {
-  std::vector<double> weights(x.size(), 0.0);
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    double sum = 0.0;  // over k of prod_{m != j, k} (0 - x_m) / prod_{m != j} (x_j - x_m)
-    double below = 1.0;
-    for (std::size_t m = 0; m < x.size(); ++m) {
-      if (m != j) below *= x[j] - x[m];
-    }
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      if (k == j) continue;
-      double product = 1.0;
-      for (std::size_t m = 0; m < x.size(); ++m) {
-        if (m != j && m != k) product *= -x[m];
-      }
-      sum += product;
-    }
-    weights[j] = sum / below;
-  }
-  return weights;
-}
+/// A point and its neighbours on a line, nearest first.
+struct Nodes {
+  std::array<const LineStop*, kNodesAtMost> stop{};
+  std::size_t size = 0;
+};
 
-// The nearest stops of a sorted line, nearest first; of two as near, the one below. A point's own mirror image is left
-// out: it says that the line is even, and nothing of its slope.
-std::vector<const Stop*> nearest(const Line& line, std::size_t own) {
-  std::vector<const Stop*> found;
+// The nearest stops of a sorted line; of two as near, the one below. A point's own mirror image is left out: it says
+// that the line is even, and nothing of its slope.
+Nodes nodes_about(std::span<const LineStop> line, std::size_t own) {
+  Nodes nodes{.stop = {&line[own]}, .size = 1};
   std::size_t below = own;
   std::size_t above = own + 1;
   const double x0 = line[own].coordinate;
   double last_below = x0;
   double last_above = x0;
-  const auto is_useless = [&](const Stop& stop, double last) {
+  const auto is_useless = [&](const LineStop& stop, double last) {
     return stop.point == line[own].point || std::abs(stop.coordinate - last) < kSamePlace;
   };
-  while (found.size() < kNeighboursAtMost) {
+  while (nodes.size < kNodesAtMost) {
     while (below > 0 && is_useless(line[below - 1], last_below)) --below;
     while (above < line.size() && is_useless(line[above], last_above)) ++above;
     const double down = below > 0 ? x0 - line[below - 1].coordinate : INFINITY;
     const double up = above < line.size() ? line[above].coordinate - x0 : INFINITY;
     if (std::min(down, up) > kFarthest) break;
-    if (down <= up + kSamePlace) {
-      found.push_back(&line[--below]);
-      last_below = found.back()->coordinate;
-    } else {
-      found.push_back(&line[above++]);
-      last_above = found.back()->coordinate;
-    }
+    const LineStop* next = down <= up + kSamePlace ? &line[--below] : &line[above++];
+    (next->coordinate < x0 ? last_below : last_above) = next->coordinate;
+    nodes.stop[nodes.size++] = next;
   }
-  return found;
+  return nodes;
 }
 
-struct LineSlope {
-  double slope = 0.0;
-  double unresolved = 0.0;
-  bool has_neighbours = false;
-};
-
-/// The values along a line as they are to be differentiated: ln f where all of them stand clear of zero, else f itself.
-struct Differentiable {
-  std::vector<double> value;
-  std::vector<double> u;
-  double per_unit = 1.0;  ///< df for a change of 1
-};
-
-Differentiable differentiable(std::span<const SlopePoint> points, const std::vector<const Stop*>& nodes) {
-  constexpr double kClearOfZero = 5.0;  // standard uncertainties: then ln f is normal too
-  const bool has_logarithm = std::ranges::all_of(nodes, [&](const Stop* node) {
-    const SlopePoint& p = points[node->point];
-    return p.value > kClearOfZero * p.u_random && p.value > Brdf{};
-  });
-  Differentiable d;
-  for (const Stop* node : nodes) {
-    const double f = points[node->point].value.si();
-    const double u = points[node->point].u_random.si();
-    d.value.push_back(has_logarithm ? std::log(f) : f);
-    d.u.push_back(has_logarithm ? u / f : u);
-  }
-  if (has_logarithm) d.per_unit = points[nodes.front()->point].value.si();
-  return d;
-}
-
+/// First and second derivative with their noise.
 struct Estimate {
-  double slope = 0.0;
-  double noise = 0.0;
+  double first = 0.0;
+  double first_noise2 = 0.0;
+  double second = 0.0;
+  double second_noise2 = 0.0;
 };
 
-// Element p is that of the polynomial through the point and its p nearest neighbours; element 0 is a slope of 0.
-std::vector<Estimate> estimates(const std::vector<const Stop*>& nodes, const Differentiable& d) {
-  std::vector<Estimate> found = {{}};
-  std::vector<double> x = {0.0};
-  for (std::size_t order = 1; order < nodes.size(); ++order) {
-    x.push_back(nodes[order]->coordinate - nodes.front()->coordinate);
-    const std::vector<double> weights = derivative_weights(x);
-    Estimate e;
-    for (std::size_t j = 0; j <= order; ++j) {
-      e.slope += weights[j] * d.value[j];
-      e.noise = std::hypot(e.noise, weights[j] * d.u[j]);
+/// Derivatives at the first node of the polynomials through 1, 2, .. nodes; the first is a constant's.
+/// Newton's form: P_p = P_(p-1) + y[x_0 .. x_p] prod_(m<p) (x - x_m), x_0 = 0, so that at 0
+///   P_p' = P_(p-1)' + y[..] prod_(1<=m<p) (-x_m),
+///   P_p'' = P_(p-1)'' + 2 y[..] sum_(1<=m<p) prod_(n != m) (-x_n),
+/// and y[x_0 .. x_p] = sum_j y_j / prod_(m != j) (x_j - x_m).
+std::array<Estimate, kNodesAtMost> estimates(const Nodes& nodes, const std::array<double, kNodesAtMost>& y,
+                                             const std::array<double, kNodesAtMost>& u) {
+  std::array<Estimate, kNodesAtMost> found{};
+  std::array<double, kNodesAtMost> x{};
+  std::array<double, kNodesAtMost> divided{1.0};
+  std::array<double, kNodesAtMost> first{};
+  std::array<double, kNodesAtMost> second{};
+  double product = 1.0;     // of -x_m, 1 <= m < p
+  double derivative = 0.0;  // sum over m of the products without m
+  for (std::size_t p = 1; p < nodes.size; ++p) {
+    x[p] = nodes.stop[p]->coordinate - nodes.stop[0]->coordinate;
+    double own = 1.0;
+    for (std::size_t j = 0; j < p; ++j) {
+      divided[j] /= x[j] - x[p];
+      own *= x[p] - x[j];
     }
-    found.push_back(e);
+    divided[p] = 1.0 / own;
+    Estimate& e = found[p];
+    for (std::size_t j = 0; j <= p; ++j) {
+      first[j] += product * divided[j];
+      second[j] += 2.0 * derivative * divided[j];
+      e.first += first[j] * y[j];
+      e.second += second[j] * y[j];
+      e.first_noise2 += first[j] * first[j] * u[j] * u[j];
+      e.second_noise2 += second[j] * second[j] * u[j] * u[j];
+    }
+    derivative = -x[p] * derivative + product;
+    product *= -x[p];
   }
   return found;
 }
 
-LineSlope slope_on_line(std::span<const SlopePoint> points, const Line& line, std::size_t own) {
-  std::vector<const Stop*> nodes = {&line[own]};
-  std::ranges::copy(nearest(line, own), std::back_inserter(nodes));
-  const Differentiable d = differentiable(points, nodes);
-  const std::vector<Estimate> found = estimates(nodes, d);
-  LineSlope best;
+struct Derivative {
+  double value = 0.0;
+  double missed = 0.0;
+  double noise = 0.0;
+  bool is_known = false;
+};
+
+// Of the orders from `lowest` on, the one whose noise and missed part are least.
+template <class Value, class Noise2>
+Derivative best_of(std::size_t size, std::size_t lowest, Value value, Noise2 noise2) {
+  Derivative best;
   double least = INFINITY;
-  for (std::size_t p = 1; p < found.size(); ++p) {
-    double missed = std::abs(found[p].slope - found[p - 1].slope);
+  for (std::size_t p = lowest; p < size; ++p) {
+    double missed = std::abs(value(p) - value(p - 1));
     // Two orders may agree by accident, three hardly.
-    if (p + 1 < found.size()) missed = std::max(missed, std::abs(found[p + 1].slope - found[p].slope));
-    const double all = std::hypot(found[p].noise, missed);
+    if (p + 1 < size) missed = std::max(missed, std::abs(value(p + 1) - value(p)));
+    const double all = noise2(p) + missed * missed;
     if (all >= least) continue;
     least = all;
-    best = {.slope = line[own].sign * d.per_unit * found[p].slope,
-            .unresolved = d.per_unit * missed,
-            .has_neighbours = true};
+    best = {.value = value(p), .missed = missed, .noise = std::sqrt(noise2(p)), .is_known = true};
   }
   return best;
 }
 
-void read_slopes(std::span<const SlopePoint> points, std::map<LineKey, Line>& lines, DirectionAxis axis,
-                 std::vector<DirectionSlopes>& out) {
-  const std::size_t a = index_of(axis);
-  for (auto& [key, line] : lines) {
-    std::ranges::stable_sort(line, {}, &Stop::coordinate);
-    for (std::size_t s = 0; s < line.size(); ++s) {
-      if (line[s].is_image) continue;
-      const LineSlope found = slope_on_line(points, line, s);
-      DirectionSlopes& slopes = out[line[s].point];
-      slopes.slope[a] = found.slope;
-      slopes.unresolved[a] = found.unresolved;
-      slopes.has_neighbours[a] = found.has_neighbours;
-    }
+void read_stop(const std::vector<Ordinate>& ordinates, std::span<const LineStop> line, std::size_t own, std::size_t a,
+               DirectionSlopes& slopes) {
+  const Nodes nodes = nodes_about(line, own);
+  std::array<double, kNodesAtMost> y{};
+  std::array<double, kNodesAtMost> u{};
+  bool has_logarithm = true;
+  for (std::size_t n = 0; n < nodes.size; ++n) has_logarithm &= ordinates[nodes.stop[n]->point].has_logarithm;
+  for (std::size_t n = 0; n < nodes.size; ++n) {
+    const Ordinate& o = ordinates[nodes.stop[n]->point];
+    y[n] = has_logarithm ? o.log_f : o.f;
+    u[n] = has_logarithm ? o.u_log : o.u;
   }
+  const double unit = has_logarithm ? ordinates[line[own].point].f : 1.0;
+  const double bend = has_logarithm ? 1.0 : 0.0;  // f'' / f = g'' + g'^2
+  const auto e = estimates(nodes, y, u);
+  const Derivative first = best_of(
+      nodes.size, 1, [&](std::size_t p) { return e[p].first; }, [&](std::size_t p) { return e[p].first_noise2; });
+  const Derivative second = best_of(
+      nodes.size, 2, [&](std::size_t p) { return e[p].second + bend * e[p].first * e[p].first; },
+      [&](std::size_t p) { return e[p].second_noise2; });
+  slopes.slope[a] = static_cast<double>(line[own].sign) * unit * first.value;
+  slopes.unresolved[a] = unit * first.missed;
+  slopes.has_neighbours[a] = first.is_known;
+  slopes.curvature[a] = unit * second.value;
+  slopes.unresolved_curvature[a] = second.is_known ? unit * second.missed : -1.0;  // guessed below
+  slopes.curvature_noise[a] = unit * second.noise;
+}
+
+void read_slopes(const std::vector<Ordinate>& ordinates, const DirectionLines& lines, DirectionAxis axis, int threads,
+                 std::vector<DirectionSlopes>& out) {
+  constexpr std::size_t kLinesAtOnce = 64;
+  for_blocks((lines.size() + kLinesAtOnce - 1) / kLinesAtOnce, threads, [&](std::size_t block) {
+    const std::size_t last = std::min(lines.size(), (block + 1) * kLinesAtOnce);
+    for (std::size_t n = block * kLinesAtOnce; n < last; ++n) {
+      const std::span<const LineStop> line = lines.line(n);
+      for (std::size_t s = 0; s < line.size(); ++s) {
+        if (!line[s].is_image) read_stop(ordinates, line, s, axis_index(axis), out[line[s].point]);
+      }
+    }
+  });
 }
 
 // Where phi means nothing, or where the mirror plane makes the function even, its slope is 0 without any neighbour.
 bool has_no_phi_slope(const Geometry& g, bool isotropic) {
-  if (key_of(g.theta_r) == 0) return true;
+  if (plan_key(g.theta_r) == 0) return true;
   if (!isotropic) return false;
-  const std::int64_t d = key_of(dphi_of(g, true));
-  return key_of(g.theta_i) == 0 || d == 0 || d == 180000;
+  const std::int64_t d = plan_key(azimuth_between(g, true));
+  return plan_key(g.theta_i) == 0 || d == 0 || d == 180000;
 }
 
-void guess_the_rest(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
-  const std::size_t i = index_of(DirectionAxis::ThetaI);
-  const std::size_t r = index_of(DirectionAxis::ThetaR);
-  const std::size_t phi = index_of(DirectionAxis::PhiR);
+constexpr std::size_t kI = 0;
+constexpr std::size_t kR = 1;
+constexpr std::size_t kPhi = 2;
+
+void guess_slopes(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
   const auto size = [&](std::size_t a) { return std::hypot(s.slope[a], s.unresolved[a]); };
-  if (!s.has_neighbours[i] && !s.has_neighbours[r]) {
-    s.unresolved[i] = s.unresolved[r] = std::abs(point.value.si());
-  } else if (!s.has_neighbours[i]) {
-    s.unresolved[i] = size(r);
-  } else if (!s.has_neighbours[r]) {
-    s.unresolved[r] = size(i);
+  if (!s.has_neighbours[kI] && !s.has_neighbours[kR]) {
+    s.unresolved[kI] = s.unresolved[kR] = std::abs(point.value.si());
+  } else if (!s.has_neighbours[kI]) {
+    s.unresolved[kI] = size(kR);
+  } else if (!s.has_neighbours[kR]) {
+    s.unresolved[kR] = size(kI);
   }
   if (has_no_phi_slope(point.planned, isotropic)) {
-    s.slope[phi] = s.unresolved[phi] = 0.0;
-    s.has_neighbours[phi] = true;
-  } else if (!s.has_neighbours[phi]) {
-    s.unresolved[phi] = std::max(size(i), size(r)) * std::abs(std::sin(point.reported.theta_r.si()));
+    s.slope[kPhi] = s.unresolved[kPhi] = 0.0;
+    s.has_neighbours[kPhi] = true;
+  } else if (!s.has_neighbours[kPhi]) {
+    s.unresolved[kPhi] = std::max(size(kI), size(kR)) * std::abs(std::sin(point.reported.theta_r.si()));
+  }
+}
+
+// A lobe about any direction bends alike across and along; on a circle of latitude its slope bends it too.
+void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
+  const auto is_known = [&](std::size_t a) { return s.unresolved_curvature[a] >= 0.0; };
+  const auto size = [&](std::size_t a) { return std::hypot(s.curvature[a], s.unresolved_curvature[a]); };
+  const std::array<bool, 2> known{is_known(kI), is_known(kR)};
+  if (!known[0] && !known[1]) {
+    const double f = std::abs(point.value.si());
+    s.unresolved_curvature[kI] = s.unresolved_curvature[kR] =
+        std::max({f, std::abs(s.slope[kI]), std::abs(s.slope[kR])});
+  } else if (!known[0]) {
+    s.unresolved_curvature[kI] = size(kR);
+  } else if (!known[1]) {
+    s.unresolved_curvature[kR] = size(kI);
+  }
+  const double sine = std::abs(std::sin(point.reported.theta_r.si()));
+  if (plan_key(point.planned.theta_r) == 0 || plan_key(point.planned.theta_i) == 0) {
+    s.curvature[kPhi] = s.unresolved_curvature[kPhi] = s.curvature_noise[kPhi] = 0.0;
+  } else if (!is_known(kPhi)) {
+    const double slope = std::hypot(s.slope[kR], s.unresolved[kR]) * std::abs(std::cos(point.reported.theta_r.si()));
+    s.unresolved_curvature[kPhi] = sine * (sine * std::max(size(kI), size(kR)) + slope);
   }
 }
 
 }  // namespace
 
-std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic) {
+std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic, int threads) {
+  constexpr std::size_t kPointsAtOnce = 4096;
   std::vector<DirectionSlopes> slopes(points.size());
-  for (const DirectionAxis axis : {DirectionAxis::ThetaI, DirectionAxis::ThetaR}) {
-    read_slopes(points, ThetaLines(points, isotropic, axis).lines(), axis, slopes);
-  }
-  auto lines = phi_lines(points, isotropic);
-  read_slopes(points, lines, DirectionAxis::PhiR, slopes);
-  for (std::size_t n = 0; n < points.size(); ++n) guess_the_rest(points[n], isotropic, slopes[n]);
+  std::vector<Ordinate> ordinates(points.size());
+  const std::size_t blocks = (points.size() + kPointsAtOnce - 1) / kPointsAtOnce;
+  const auto for_points = [&](const auto& work) {
+    for_blocks(blocks, threads, [&](std::size_t block) {
+      const std::size_t last = std::min(points.size(), (block + 1) * kPointsAtOnce);
+      for (std::size_t n = block * kPointsAtOnce; n < last; ++n) work(n);
+    });
+  };
+  for_points([&](std::size_t n) { ordinates[n] = ordinate_of(points[n]); });
+  constexpr std::array kAxes = {DirectionAxis::ThetaI, DirectionAxis::ThetaR, DirectionAxis::PhiR};
+  std::array<std::optional<DirectionLines>, kDirectionAxes> lines;
+  for_blocks(kAxes.size(), threads, [&](std::size_t a) { lines[a].emplace(points, isotropic, kAxes[a]); });
+  for (std::size_t a = 0; a < kAxes.size(); ++a) read_slopes(ordinates, *lines[a], kAxes[a], threads, slopes);
+  for_points([&](std::size_t n) {
+    guess_slopes(points[n], isotropic, slopes[n]);
+    guess_curvatures(points[n], slopes[n]);
+  });
   return slopes;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,32 +22,38 @@ struct SlopePoint {
   Wavelength wavelength;
   Brdf value;
   Brdf u_random;
+  std::int32_t state = 0;  ///< of polarisation: points of one line have the same
 };
 
-/// The change of f_r with each angle at one point, sr^-1 per radian.
+/// The change of f_r with each angle at one point: sr^-1 per radian, and per radian squared.
 struct DirectionSlopes {
   std::array<double, kDirectionAxes> slope{};
   std::array<double, kDirectionAxes> unresolved{};  ///< standard uncertainty of `slope`: what the points do not resolve
+  std::array<double, kDirectionAxes> curvature{};   ///< second derivatives along each angle alone
+  std::array<double, kDirectionAxes> unresolved_curvature{};  ///< standard uncertainty, likewise
+  std::array<double, kDirectionAxes> curvature_noise{};       ///< from the points' u_random
   std::array<bool, kDirectionAxes>
       has_neighbours{};  ///< false: no other point on this line; `slope` is 0, `unresolved` a guess
 };
 
 /// Slopes from the measured points alone; no model of the surface. For each point and axis:
-/// - its line holds the points of the same wavelength whose other angles are planned equal (to 0.001 deg). A theta line
-/// runs
-///   through the normal into the opposite half plane; for an isotropic sample a point also stands for its mirror image
-///   in the plane of incidence, and theta = 0 belongs to all lines through it;
+/// - its line holds the points of the same wavelength and polarisation whose other angles are planned equal (to 0.001
+///   deg). A theta line runs through the normal into the opposite half plane; for an isotropic sample a point also
+///   stands for its mirror image in the plane of incidence, and theta = 0 belongs to all lines through it;
 /// - polynomials of ln f (lobes and canopies are products; of f where a value does not stand 5 u clear of zero) through
 ///   the point and its 1, 2, 3, 4 nearest neighbours within 45 deg give derivatives s_1 .. s_4, s_0 = 0. What order p
 ///   misses is taken as the larger of |s_p - s_(p-1)| and |s_(p+1) - s_p|: an estimate for a smooth surface, no bound;
 /// - taken is the p with the least noise^2 + missed^2, `unresolved` is what it misses. The noise itself is part of s_p,
 ///   so the expectation of s_p^2 holds it already;
+/// - second derivatives likewise from p = 2 on, of ln f as f (g'' + g'^2);
 /// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope;
 /// - without a neighbour: |df/dtheta_i| is taken as large as |df/dtheta_r| and the other way round (equal for what
-/// depends
-///   on the phase angle or on the tilt of a facet), phi as large as the larger of them times sin(theta_r), and without
-///   any neighbour at all, |f| per radian.
-/// [points], in their order. O(n log n). The same bits whatever else runs.
-[[nodiscard]] std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic);
+///   depends on the phase angle or on the tilt of a facet), phi as large as the larger of them times sin(theta_r), and
+///   without any neighbour at all, |f| per radian; second derivatives likewise.
+/// Newton's divided differences (Abramowitz and Stegun 1964, 25.2.26): each neighbour adds one term.
+/// [points], in their order. O(n log n). Threads: its own, at most `threads` (0: as the machine has); the same bits for
+/// any number.
+[[nodiscard]] std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic,
+                                                            int threads = 1);
 
 }  // namespace gonio::calibration

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "calibration/normalised_reading.h"
-
 namespace gonio::calibration {
 namespace {
 
@@ -43,30 +41,62 @@ double u_of(const NormalisedReading& visit, const InstrumentModel& instrument) {
 
 }  // namespace
 
-DriftHistory::DriftHistory(const ScanReadings& scan, const DarkHistory& darks, const InstrumentModel& instrument)
+DriftHistory::DriftHistory(const ScanReadings& scan, const ReadingContext& context, const InstrumentModel& instrument)
     : limit_(scan.drift_limit) {
   double unit = 0.0;
   for (const auto& [id, reading] : visits_of_standard(scan)) {
-    const auto visit = normalise(reading, darks, instrument.detector);
+    const auto visit = normalise(reading, context);
     if (!visit || !(visit->q > 0.0)) continue;  // saturated, or dark: it says nothing of the response
     if (unit == 0.0) unit = visit->q;
     const double level = visit->q / unit;
-    visits_.push_back({.visit_id = id, .at = reading.at, .level = level, .u = level * u_of(*visit, instrument)});
+    visits_.push_back({.visit_id = id,
+                       .at = reading.at,
+                       .level = level,
+                       .u = level * u_of(*visit, instrument),
+                       .reading = *visit,
+                       .reading_id = reading.id});
   }
   std::ranges::sort(visits_, {}, &ReferenceVisit::at);
+  find_wander();
+}
+
+void DriftHistory::find_wander() {
+  constexpr std::size_t kFewest = 4;  // from a single inner visit nothing is known
+  if (visits_.size() < kFewest) return;
+  double sum = 0.0;
+  for (std::size_t n = 1; n + 1 < visits_.size(); ++n) {
+    const ReferenceVisit& a = visits_[n - 1];
+    const ReferenceVisit& b = visits_[n];
+    const ReferenceVisit& c = visits_[n + 1];
+    const double before = in_seconds(b.at - a.at);
+    const double after = in_seconds(c.at - b.at);
+    if (!(before > 0.0) || !(after > 0.0)) return;
+    const double w = before / (before + after);
+    const double off = b.level - (1.0 - w) * a.level - w * c.level;
+    const double noise2 = b.u * b.u + (1.0 - w) * (1.0 - w) * a.u * a.u + w * w * c.u * c.u;
+    sum += (off * off - noise2) * (before + after) / (before * after);
+  }
+  wander_dof_ = static_cast<double>(visits_.size() - 2);
+  wander_rate_ = std::max(0.0, sum / wander_dof_);
 }
 
 DriftLevel DriftHistory::between(const ReferenceVisit& a, const ReferenceVisit& b) const {
   constexpr double kCertain = 3.0;
   const double change = b.level - a.level;
   const double u = std::hypot(a.u, b.u);
-  return {.change = std::sqrt(std::max(0.0, change * change - u * u)),
-          .is_large = limit_ && std::abs(change) > std::max(*limit_ * a.level, kCertain * u)};
+  DriftLevel found{.change = std::sqrt(std::max(0.0, change * change - u * u)),
+                   .is_large = limit_ && std::abs(change) > std::max(*limit_ * a.level, kCertain * u)};
+  found.wander = found.change;
+  if (wander_rate_) {
+    found.wander = std::sqrt(*wander_rate_ * in_seconds(b.at - a.at));
+    found.wander_dof = wander_dof_;
+  }
+  return found;
 }
 
 std::optional<DriftLevel> DriftHistory::at(Instant when) const {
   if (visits_.size() < 2) return std::nullopt;
-  const auto next = std::ranges::find_if(visits_, [&](const ReferenceVisit& visit) { return visit.at >= when; });
+  const auto next = std::ranges::lower_bound(visits_, when, {}, &ReferenceVisit::at);
   const bool is_early = next == visits_.begin();
   const bool is_late = next == visits_.end();
   const ReferenceVisit& a = is_early ? visits_.front() : *(is_late ? next - 2 : next - 1);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "base/clock.h"
 #include "calibration/dark_history.h"
 #include "calibration/instrument_model.h"
+#include "calibration/normalised_reading.h"
 #include "calibration/raw_reading.h"
 
 namespace gonio::calibration {
@@ -15,8 +17,10 @@ namespace gonio::calibration {
 struct ReferenceVisit {
   std::int64_t visit_id = 0;
   Instant at{};
-  double level = 1.0;  ///< q in units of the first visit's
-  double u = 0.0;      ///< of the level: noise, monitor, darks, placing
+  double level = 1.0;           ///< q in units of the first visit's
+  double u = 0.0;               ///< of the level: noise, monitor, darks, placing
+  NormalisedReading reading;    ///< all readings of the visit together
+  std::int64_t reading_id = 0;  ///< RawReading::id of the first of them
 };
 
 /// The instrument's response at a moment, in units of that at the first visit.
@@ -28,6 +32,9 @@ struct DriftLevel {
   /// What the level changed by over its interval (the nearest one beyond the visits), beyond the visits' own noise; >=
   /// 0.
   double change = 0.0;
+  /// Standard deviation over a whole interval of this length of what no line follows; `change` with two visits only.
+  double wander = 0.0;
+  double wander_dof = std::numeric_limits<double>::infinity();  ///< how well `wander` is known
   double beyond = 0.0;    ///< of an interval, from the nearest visit; 0 between two visits
   bool is_large = false;  ///< the change is beyond the scan's drift limit, and beyond chance
   [[nodiscard]] bool is_between() const { return before != nullptr && after != nullptr; }
@@ -35,19 +42,28 @@ struct DriftLevel {
 
 /// What the lamp's monitor does not see: the response to one unchanging thing, the standard at one geometry, as the
 /// visits found it. Visits at another point than the first are left out. Immutable; threads: any.
+/// What no line follows: each inner visit lies off the line between its neighbours by r, of variance s dt1 dt2 / (dt1 +
+/// dt2) for a random walk or for steps at random moments, and by nothing for a steady drift. The mean of (r^2 - the
+/// visits' own noise) (dt1 + dt2) / (dt1 dt2) over the n - 2 inner visits is s, with as many degrees of freedom; the
+/// bridge over the part p of an interval T then has the variance s T p (1 - p) (Brownian bridge).
 class DriftHistory {
  public:
-  DriftHistory(const ScanReadings& scan, const DarkHistory& darks, const InstrumentModel& instrument);
+  DriftHistory(const ScanReadings& scan, const ReadingContext& context, const InstrumentModel& instrument);
 
   /// Linear in time between the two bracketing visits; beyond the first or last, the nearest. Nothing with fewer than
   /// two visits. The pointers live as long as this object.
   [[nodiscard]] std::optional<DriftLevel> at(Instant when) const;
+  /// In time order.
+  [[nodiscard]] const std::vector<ReferenceVisit>& visits() const { return visits_; }
 
  private:
   [[nodiscard]] DriftLevel between(const ReferenceVisit& a, const ReferenceVisit& b) const;
+  void find_wander();
 
   std::vector<ReferenceVisit> visits_;  ///< in time order
   std::optional<double> limit_;
+  std::optional<double> wander_rate_;  ///< variance a second, of levels of about 1
+  double wander_dof_ = 0.0;
 };
 
 }  // namespace gonio::calibration

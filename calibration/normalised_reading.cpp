@@ -4,14 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace gonio::calibration {
 namespace {
 
-double gain_factor(const RawFrame& frame) {
-  return std::pow(10.0, frame.gain_db / 20.0);
+double gain_factor(const RawFrame& frame, const DetectorModel& detector) {
+  const double stated = frame.gain_db == 0.0 ? 1.0 : std::pow(10.0, frame.gain_db / 20.0);
+  for (const GainFactor& gain : detector.gains) {
+    if (std::abs(gain.gain_db - frame.gain_db) < 5e-4) return stated * gain.factor.value;
+  }
+  return stated;
+}
+
+double range_factor(const PowerReading& power, const DetectorModel& detector) {
+  if (!detector.power) return 1.0;
+  for (const RangeFactor& range : detector.power->ranges) {
+    if (std::abs(range.range_w - power.range_w) < 1e-6 * power.range_w) return range.factor.value;
+  }
+  return 1.0;
 }
 
 Error refusal(const RawReading& reading, ErrorCode code, std::string seen, std::string limit) {
@@ -79,19 +90,23 @@ Geometry mean_geometry(const std::vector<RawFrame>& frames) {
 }
 
 // Of a frame's net mean, DN^2.
-double noise_variance(const RawFrame& frame, double net, const DarkLevel& dark, const DetectorModel& detector) {
+double noise_variance(const RawFrame& frame, double net, double gain, const DarkLevel& dark,
+                      const DetectorModel& detector) {
   if (frame.reduced) return frame.reduced->u_noise_dn * frame.reduced->u_noise_dn;
-  const double shot = std::max(0.0, net) * gain_factor(frame) / detector.electrons_per_dn;
+  const double shot = std::max(0.0, net) * gain / detector.electrons_per_dn;
   return (dark.pixel_variance_dn2 + shot) / frame.region.n;
 }
 
 struct FrameTerm {
-  double net = 0.0;       // DN, or W
-  double light = 0.0;     // (t + t0) G m, or m
+  double net = 0.0;       // DN, or W: linearised
+  double light = 0.0;     // E m
+  double ambient = 0.0;   // E: what the ambient light has acted through
   double variance = 0.0;  // of net, without the dark level's own
   double u_light = 0.0;   // from the monitor's noise
-  double share = 0.0;     // net as the detector's linearity sees it: DN, or a part of the range
+  double share = 0.0;     // the signal as the detector's linearity sees it: DN, or a part of the range
   double gain_monitor = 0.0;
+  double slope = 1.0;  // d net / d signal
+  LinearityPowers powers{};
 };
 
 // Of the sum of the net means, from their scatter about q times their light: sqrt(m) s. The monitor's noise is in it
@@ -103,28 +118,69 @@ double scatter(const std::vector<FrameTerm>& terms, double q) {
   return std::sqrt(squares * m / (m - 1.0));
 }
 
-double u_monitor(const RawFrame& frame, const DetectorModel& detector) {
-  return std::hypot(frame.monitor_se, detector.u_monitor_window * frame.monitor_mean);
+// What the frame's term is made with.
+struct Clearing {
+  const RawFrame& frame;
+  const DetectorModel& detector;
+  const LeftOut& left_out;
+  double dark_dn;
+  double monitor;
+  double u_monitor;
+};
+
+void linearise(FrameTerm& term, const Clearing& with, double full_scale) {
+  const LinearityModel& model = with.detector.linearity;
+  if (model.coefficients.empty() && model.covariance.empty()) return;
+  const bool has_pixels = !with.frame.power && !with.frame.reduced;
+  term.powers = linearity_powers(term.net, full_scale, has_pixels ? &with.frame.region : nullptr);
+  if (with.left_out.linearity) return;
+  const double x = term.net / full_scale;
+  double power = 1.0;
+  for (std::size_t k = 0; k < std::min(model.coefficients.size(), kLinearityTerms); ++k) {
+    power *= x;
+    term.slope += static_cast<double>(k + 2) * model.coefficients[k] * power;
+  }
+  term.net += linearity_gain(model, term.powers);
 }
 
-FrameTerm camera_term(const RawFrame& frame, const DarkLevel& dark, const DetectorModel& detector) {
-  const double gain = gain_factor(frame);
-  const double exposure = (frame.exposure_s + detector.exposure_offset_s.value) * gain;
-  FrameTerm term{.net = frame.signal_dn() - dark.level_dn, .light = exposure * frame.monitor_mean};
-  term.variance = noise_variance(frame, term.net, dark, detector);
-  term.u_light = exposure * u_monitor(frame, detector);
+FrameTerm camera_term(const Clearing& with, const DarkLevel& dark) {
+  const RawFrame& frame = with.frame;
+  const DetectorModel& detector = with.detector;
+  const double gain = gain_factor(frame, detector);
+  const double t0 = with.left_out.exposure_offset ? 0.0 : detector.exposure_offset_s.value;
+  const double exposure = (frame.exposure_s + t0) * gain;
+  FrameTerm term{.net = frame.signal_dn() - with.dark_dn, .light = exposure * with.monitor, .ambient = exposure};
+  term.variance = noise_variance(frame, term.net, gain, dark, detector);
+  term.u_light = exposure * with.u_monitor;
   term.share = term.net;
-  term.gain_monitor = gain * frame.monitor_mean;
+  term.gain_monitor = gain * with.monitor;
+  linearise(term, with, detector.full_scale_dn);
+  term.variance *= term.slope * term.slope;
   return term;
 }
 
-FrameTerm power_term(const RawFrame& frame, const DarkLevel& dark, const DetectorModel& detector) {
-  const PowerReading& power = *frame.power;
-  FrameTerm term{.net = power.mean_w - dark.level_dn, .light = frame.monitor_mean};
-  term.variance = noise_variance_w2(detector.power.value_or(PowerModel{}), power);
-  term.u_light = u_monitor(frame, detector);
+FrameTerm power_term(const Clearing& with) {
+  const PowerReading& power = *with.frame.power;
+  const double factor = range_factor(power, with.detector);
+  FrameTerm term{.net = power.mean_w - with.dark_dn, .light = with.monitor / factor, .ambient = 1.0 / factor};
+  term.variance = noise_variance_w2(with.detector.power.value_or(PowerModel{}), power);
+  term.u_light = with.u_monitor / factor;
   term.share = term.net / power.range_w;
+  linearise(term, with, power.range_w);
+  term.variance *= term.slope * term.slope;
   return term;
+}
+
+FrameTerm term_of(const RawFrame& frame, const DarkLevel& dark, const ReadingContext& context) {
+  const DetectorModel& detector = *context.detector;
+  const double monitor = context.left_out.monitor ? 1.0 : frame.monitor_mean;
+  const Clearing with{.frame = frame,
+                      .detector = detector,
+                      .left_out = context.left_out,
+                      .dark_dn = context.left_out.dark ? 0.0 : dark.level_dn,
+                      .monitor = monitor,
+                      .u_monitor = std::hypot(frame.monitor_se, detector.u_monitor_window * monitor)};
+  return frame.power ? power_term(with) : camera_term(with, dark);
 }
 
 Error no_dark(const RawReading& reading, const RawFrame& frame) {
@@ -136,49 +192,90 @@ Error no_dark(const RawReading& reading, const RawFrame& frame) {
                  fmt::format("a dark visit at {} s and {} dB", frame.exposure_s, frame.gain_db));
 }
 
-}  // namespace
+// Where its darks are kept: a new entry for a rung's first frame.
+DarkShare& share_of(std::vector<DarkShare>& shares, const ExposureRung& rung, const DarkLevel& dark) {
+  const auto found = std::ranges::find(shares, rung, &DarkShare::rung);
+  return found != shares.end() ? *found : shares.emplace_back(DarkShare{.rung = rung, .level = dark});
+}
 
-Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
-                                    const DetectorModel& detector) {
-  GONIO_TRY(check(reading));
-  std::map<ExposureRung, DarkShare> shares;
-  std::vector<FrameTerm> terms;
-  FrameTerm sum;
-  double monitor2 = 0.0;
-  for (const RawFrame& frame : reading.frames) {
-    const ExposureRung rung = rung_of(frame);
-    const std::optional<DarkLevel> dark = darks.at(rung, reading.at);
-    if (!dark) return failure(no_dark(reading, frame));
-    const FrameTerm& term =
-        terms.emplace_back(frame.power ? power_term(frame, *dark, detector) : camera_term(frame, *dark, detector));
-    sum.net += term.net;
-    sum.light += term.light;
-    sum.variance += term.variance;
-    sum.share += term.share;
-    sum.gain_monitor += term.gain_monitor;
-    monitor2 += term.u_light * term.u_light;
-    shares.try_emplace(rung, DarkShare{rung, *dark, 0.0}).first->second.dq_dlevel -= 1.0;
-  }
-  NormalisedReading out{.q = sum.net / sum.light,
-                        .u_noise = std::sqrt(sum.variance) / sum.light,
-                        .u_monitor = std::abs(sum.net) * std::sqrt(monitor2) / (sum.light * sum.light),
-                        .dlnq_dt0 = -sum.gain_monitor / sum.light,
-                        .mean_net_dn = sum.share / static_cast<double>(reading.frames.size()),
-                        .frame_dof = static_cast<double>(reading.frames.size()) - 1.0,
-                        .geometry = mean_geometry(reading.frames),
-                        .at = reading.at};
+void add(FrameTerm& sum, const FrameTerm& term, double& monitor2) {
+  sum.net += term.net;
+  sum.light += term.light;
+  sum.ambient += term.ambient;
+  sum.variance += term.variance;
+  sum.share += term.share;
+  sum.gain_monitor += term.gain_monitor;
+  for (std::size_t k = 0; k < kLinearityTerms; ++k) sum.powers[k] += term.powers[k];
+  monitor2 += term.u_light * term.u_light;
+}
+
+// The ambient light has come through each frame's exposure and gain, the lamp's stray light with the lamp itself.
+void subtract_background(const RawReading& reading, const ReadingContext& context, FrameTerm& sum,
+                         std::vector<FrameTerm>& terms, NormalisedReading& out) {
+  if (context.ambient != nullptr) out.ambient = context.ambient->at(reading.light_class, reading.at);
+  if (!out.ambient) return;
+  const double level = context.left_out.ambient ? 0.0 : out.ambient->level;
+  sum.net -= level * sum.ambient;
+  for (FrameTerm& term : terms) term.net -= level * term.ambient;
+}
+
+void judge_frames(const std::vector<FrameTerm>& terms, double light, const DetectorModel& detector,
+                  NormalisedReading& out) {
   for (const FrameTerm& term : terms) {
     out.frame_chi2 += std::pow(term.net - out.q * term.light, 2) / (term.variance + std::pow(out.q * term.u_light, 2));
   }
   if (detector.noise == NoiseSource::RepeatedFrames && terms.size() > 1) {
-    out.u_noise = scatter(terms, out.q) / sum.light;
+    out.u_noise = scatter(terms, out.q) / light;
     out.noise_dof = out.frame_dof;
   }
-  for (auto& [rung, share] : shares) {
+}
+
+void finish(const FrameTerm& sum, double monitor2, double frames, NormalisedReading& out) {
+  out.q = sum.net / sum.light;
+  out.u_noise = std::sqrt(sum.variance) / sum.light;
+  out.u_monitor = std::abs(sum.net) * std::sqrt(monitor2) / (sum.light * sum.light);
+  out.dlnq_dt0 = -sum.gain_monitor / sum.light;
+  out.mean_net_dn = sum.share / frames;
+  out.frame_dof = frames - 1.0;
+  out.dq_dambient = -sum.ambient / sum.light;
+  for (std::size_t k = 0; k < kLinearityTerms; ++k) out.dq_dlinearity[k] = sum.powers[k] / sum.light;
+  for (DarkShare& share : out.darks) {
     share.dq_dlevel /= sum.light;
-    out.darks.push_back(std::move(share));
+    share.light_share /= sum.light;
   }
+  std::ranges::sort(out.darks, {}, &DarkShare::rung);
+}
+
+}  // namespace
+
+Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context) {
+  GONIO_TRY(check(reading));
+  NormalisedReading out{.geometry = mean_geometry(reading.frames), .at = reading.at};
+  std::vector<FrameTerm> terms;  // of a single frame nothing is to be judged
+  FrameTerm sum;
+  double monitor2 = 0.0;
+  for (const RawFrame& frame : reading.frames) {
+    const ExposureRung rung = rung_of(frame);
+    const std::optional<DarkLevel> dark = context.darks->at(rung, reading.at);
+    if (!dark) return failure(no_dark(reading, frame));
+    const FrameTerm term = term_of(frame, *dark, context);
+    if (reading.frames.size() > 1) terms.push_back(term);
+    add(sum, term, monitor2);
+    DarkShare& share = share_of(out.darks, rung, *dark);
+    share.dq_dlevel -= term.slope;
+    share.light_share += term.light;
+  }
+  subtract_background(reading, context, sum, terms, out);
+  finish(sum, monitor2, static_cast<double>(reading.frames.size()), out);
+  judge_frames(terms, sum.light, *context.detector, out);
+  if (context.stray != nullptr) out.stray = context.stray->at(reading.light_class, reading.at);
+  if (out.stray && !context.left_out.stray) out.q -= out.stray->level;
   return out;
+}
+
+Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
+                                    const DetectorModel& detector) {
+  return normalise(reading, ReadingContext{.darks = &darks, .detector = &detector});
 }
 
 }  // namespace gonio::calibration

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/geometry.h"
 #include "base/result.h"
+#include "calibration/background_history.h"
 #include "calibration/dark_history.h"
 #include "calibration/instrument_model.h"
+#include "calibration/left_out.h"
+#include "calibration/linearity.h"
 #include "calibration/raw_reading.h"
 
 namespace gonio::calibration {
@@ -15,14 +20,24 @@ namespace gonio::calibration {
 struct DarkShare {
   ExposureRung rung;
   DarkLevel level;
-  double dq_dlevel = 0.0;  ///< of the interpolated level
+  double dq_dlevel = 0.0;    ///< of the interpolated level
+  double light_share = 0.0;  ///< of the reading's light: what its gain or range acts on
 };
 
-/// One reading, cleared of dark, exposure, gain and lamp:
-///   q = sum_j (S_j - D_j) / sum_j ((t_j + t0) G_j m_j)     over its frames j,
-/// in DN per second and unit of the monitor; signed. A radiometer has no exposure: q = sum_j (P_j - D_j) / sum_j m_j,
-/// in W per unit of the monitor. The ratio of sums weighs frames as their light does, so that frames of different
-/// exposures combine as their shot noise asks.
+/// What a reading is cleared with. What it points to must outlive it.
+struct ReadingContext {
+  const DarkHistory* darks = nullptr;          ///< never null
+  const DetectorModel* detector = nullptr;     ///< never null
+  const BackgroundHistory* ambient = nullptr;  ///< null: not subtracted
+  const BackgroundHistory* stray = nullptr;    ///< null: not subtracted
+  LeftOut left_out;
+};
+
+/// One reading, cleared of dark, exposure, gain, lamp and background:
+///   q = sum_j (Lin^-1(S_j - D_j) - a E_j) / sum_j (E_j m_j) - b,   E_j = (t_j + t0) G_j,     over its frames j,
+/// in DN per second and unit of the monitor; signed; a the ambient and b the stray light where visits found them. A
+/// radiometer has no exposure: E = 1 / G of its range, in W per unit of the monitor. The ratio of sums weighs frames as
+/// their light does, so that frames of different exposures combine as their shot noise asks.
 struct NormalisedReading {
   double q = 0.0;
   double u_noise = 0.0;  ///< of q, random: by photon transfer, or from the frames' own scatter
@@ -32,14 +47,20 @@ struct NormalisedReading {
   double mean_net_dn = 0.0;  ///< of a pixel of a frame, or as part of the range: what linearity depends on
   double frame_chi2 = 0.0;   ///< of its frames about q, by the noise model; `frame_dof` degrees of freedom
   double frame_dof = 0.0;
-  std::vector<DarkShare> darks;  ///< one each rung
-  Geometry geometry;             ///< reported: mean of open and close over the frames
+  std::vector<DarkShare> darks;                         ///< one each rung, ascending
+  std::array<double, kLinearityTerms> dq_dlinearity{};  ///< of each coefficient of LinearityModel
+  double dq_dambient = 0.0;                             ///< of the ambient level
+  std::optional<BackgroundLevel> ambient;               ///< subtracted
+  std::optional<BackgroundLevel> stray;                 ///< subtracted: dq/db = -1
+  Geometry geometry;                                    ///< reported: mean of open and close over the frames
   Instant at{};
 };
 
 /// Errors: Saturated (a pixel of the aperture: dropping it would bias the mean); IncompleteData (no frame, no pixel, no
 /// light on the monitor, or no dark at this exposure and gain).
 /// Variance of a pixel of a frame, in DN^2: dark part + net / K (EMVA 1288 release 4.0, eq 5), K = electrons_per_dn.
+[[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context);
+/// Without any background. Both must outlive the call.
 [[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
                                                   const DetectorModel& detector);
 

@@ -17,8 +17,19 @@ namespace {
 using calibration::PointFlag;
 
 constexpr int kPointsAtOnce = 5000;
-constexpr std::array kFlags{PointFlag::NearZero,          PointFlag::DarkExtrapolated, PointFlag::FewNeighbours,
-                            PointFlag::BorrowedReference, PointFlag::UncertainDivisor, PointFlag::Drifted};
+constexpr std::array kFlags{PointFlag::NearZero,
+                            PointFlag::DarkExtrapolated,
+                            PointFlag::FewNeighbours,
+                            PointFlag::BorrowedReference,
+                            PointFlag::UncertainDivisor,
+                            PointFlag::Drifted,
+                            PointFlag::InstrumentLimited,
+                            PointFlag::MonteCarlo,
+                            PointFlag::FewRepeats,
+                            PointFlag::Mixed,
+                            PointFlag::ReferenceExtrapolated,
+                            PointFlag::Blocked,
+                            PointFlag::Saturated};
 
 std::string flag_words(std::uint32_t flags) {
   std::string words;

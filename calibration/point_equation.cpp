@@ -1,0 +1,116 @@
+#include "calibration/point_equation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "calibration/mounting_term.h"
+
+namespace gonio::calibration {
+namespace {
+
+// d ln f_ref / d angle of the shape table, over a quarter of a degree, within the table.
+double slope_of_shape(const ReferenceStandard& standard, const Geometry& at, double shape, std::size_t axis) {
+  constexpr Angle kStep = degrees(0.25);
+  Geometry low = at;
+  Geometry high = at;
+  const auto angle = [&](Geometry& g) -> Angle& { return axis == 0 ? g.theta_i : axis == 1 ? g.theta_r : g.phi_r; };
+  angle(low) -= kStep;
+  angle(high) += kStep;
+  if (axis < 2) angle(high) = std::min(angle(high), axis == 0 ? standard.last_theta_i() : standard.last_theta_r());
+  const double change = standard.shape(high) - standard.shape(low);
+  return change / ((angle(high) - angle(low)).si() * shape);
+}
+
+StandardView view_of(const ReferenceStandard& standard, const Measured<double>& rho, const Geometry& at,
+                     const LeftOut& left_out) {
+  StandardView view{.rho = rho};
+  if (left_out.shape) return view;
+  view.shape = standard.shape(at);
+  for (std::size_t a = 0; a < kDirectionAxes; ++a) view.slope[a] = slope_of_shape(standard, at, view.shape, a);
+  return view;
+}
+
+Error no_light(const PlannedPoint& point, const RawReading& reading, const NormalisedReading& q, bool is_power) {
+  return {.code = ErrorCode::IncompleteData,
+          .device = "detector",
+          .tried = fmt::format("calibrate point {}", point.index),
+          .seen = fmt::format("reference reading {} of {:.4g} {} net", reading.id, q.mean_net_dn,
+                              is_power ? "of its range" : "DN"),
+          .limit = "more than 0"};
+}
+
+// The directions in the frame of the surface, and what its place does to the light: the source's distance squared.
+double place_on(NormalisedReading& reading, const AngleModel& angles, const MountModel* mount, Length source_distance) {
+  reading.geometry.theta_i += angles.zero[0];
+  reading.geometry.theta_r += angles.zero[1];
+  reading.geometry.phi_r += angles.zero[2];
+  if (mount == nullptr) return 1.0;
+  const SurfaceView view = view_on(*mount, source_distance, reading.geometry);
+  reading.geometry = view.geometry;
+  return view.irradiance;
+}
+
+double place_both(PairedPoint& pair, const InstrumentModel& instrument, bool is_mounting_known) {
+  const MountingModel* mounting = is_mounting_known && instrument.mounting ? &*instrument.mounting : nullptr;
+  const Length distance = mounting != nullptr ? mounting->source_distance : Length{};
+  const double sample =
+      place_on(pair.sample, instrument.angles, mounting != nullptr ? &mounting->sample : nullptr, distance);
+  const double reference =
+      place_on(pair.reference, instrument.angles, mounting != nullptr ? &mounting->reference : nullptr, distance);
+  return reference / sample;
+}
+
+void evaluate(PairedPoint& pair, const EquationContext& context) {
+  const double mu_s = std::cos(pair.sample.geometry.theta_i.si());
+  const double f_ref = pair.standard.rho.value * pair.standard.shape / std::numbers::pi;
+  pair.dvalue_dq = f_ref * pair.cosine_ratio * pair.drift_ratio / pair.reference.q;
+  pair.stray = 1.0 / (std::numbers::pi * mu_s);
+  double background = 0.0;
+  const auto& stray = context.instrument->stray;
+  if (stray && !context.histories->has_trap_visits() && !context.left_out.stray) {
+    background = stray->source_share.value * pair.stray;
+    pair.dvalue_dq += background * pair.drift_ratio / pair.reference.q;
+  }
+  pair.value = pair.dvalue_dq * pair.sample.q - background;
+}
+
+}  // namespace
+
+Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& readings, const EquationContext& context) {
+  const ReferenceStandard& standard = *context.standard;
+  auto q_sample = normalise(*readings.sample, context.histories->context());
+  if (!q_sample) return failure(std::move(q_sample).error());
+  auto q_reference = normalise(*readings.reference, context.histories->context());
+  if (!q_reference) return failure(std::move(q_reference).error());
+  PairedPoint pair{.sample = std::move(*q_sample),
+                   .reference = std::move(*q_reference),
+                   .reference_id = readings.reference->id,
+                   .reference_is_shared = readings.is_shared,
+                   .wavelength = point.wavelength,
+                   .polarisation = point.polarisation};
+  const double nearness = place_both(pair, *context.instrument, !context.left_out.mounting);
+  GONIO_TRY(standard.check_reach(point.wavelength, pair.reference.geometry));
+  if (!(pair.reference.q > 0.0)) {
+    return failure(
+        no_light(point, *readings.reference, pair.reference, context.instrument->detector.power.has_value()));
+  }
+  pair.standard =
+      view_of(standard, standard.reflectance(point.wavelength).value(), pair.reference.geometry, context.left_out);
+  pair.cosine_ratio =
+      nearness * std::cos(pair.reference.geometry.theta_i.si()) / std::cos(pair.sample.geometry.theta_i.si());
+  pair.sample_log_slope[0] = -std::tan(pair.sample.geometry.theta_i.si());
+  pair.reference_log_slope[0] = -std::tan(pair.reference.geometry.theta_i.si());
+  pair.sample_drift = context.histories->drift_at(pair.sample.at);
+  if (pair.sample_drift) {
+    pair.reference_drift = context.histories->drift_at(pair.reference.at);
+    pair.drift_ratio = pair.reference_drift->level / pair.sample_drift->level;
+  }
+  evaluate(pair, context);
+  return pair;
+}
+
+}  // namespace gonio::calibration

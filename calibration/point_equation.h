@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "base/result.h"
+#include "calibration/calibrate.h"
+#include "calibration/direction_slopes.h"
+#include "calibration/drift_history.h"
+#include "calibration/instrument_model.h"
+#include "calibration/normalised_reading.h"
+#include "calibration/reading_pairs.h"
+#include "calibration/reference_standard.h"
+#include "calibration/scan_histories.h"
+
+namespace gonio::calibration {
+
+/// The standard where its reading was made.
+struct StandardView {
+  Measured<double> rho;  ///< of the certificate
+  double shape = 1.0;
+  std::array<double, kDirectionAxes> slope{};  ///< d ln f_ref / d angle, 1/rad
+};
+
+/// A sample reading and the reference reading of the same geometry, and the value they make.
+struct PairedPoint {
+  NormalisedReading sample;  ///< its geometry in the surface's own frame, zeros and mounting corrected
+  NormalisedReading reference;
+  std::int64_t reference_id = 0;
+  bool reference_is_shared = false;  ///< other points use the same reading
+  Wavelength wavelength;
+  Polarisation polarisation = Polarisation::Any;
+  StandardView standard;
+  double cosine_ratio = 1.0;  ///< mu_i,ref / mu_i,s, times what a raised surface does to the distance of the source
+  std::array<double, kDirectionAxes> sample_log_slope{};     ///< d ln q / d angle of all but f_s: -tan(theta_i), 0, 0
+  std::array<double, kDirectionAxes> reference_log_slope{};  ///< of the reference's reading likewise
+  double value = 0.0;                                        ///< f_s, sr^-1
+  double stray = 0.0;                                        ///< sr^-1 of one unit of stray share: 1 / (pi mu_i,s)
+  double drift_ratio = 1.0;                ///< response at the reference's reading / response at the sample's
+  double dvalue_dq = 0.0;                  ///< f_ref cosine_ratio drift_ratio / q_ref, with stray light of both
+  std::optional<DriftLevel> sample_drift;  ///< nothing: not corrected
+  std::optional<DriftLevel> reference_drift;
+};
+
+/// What the equation of every point of a scan has in common. What it points to must outlive it.
+struct EquationContext {
+  const ScanHistories* histories = nullptr;
+  const InstrumentModel* instrument = nullptr;
+  const ReferenceStandard* standard = nullptr;
+  LeftOut left_out;
+};
+
+/// The measurement equation of one point (calibrate.h), but for what needs its neighbours: the cones.
+/// With stray light of a stated share b of white (StrayModel), K the reading of white at normal incidence:
+///   q_s = K (pi f_s mu_s + b),  q_ref = K (pi f_ref mu_ref + b)
+///   f_s = (q_s / q_ref (pi f_ref mu_ref + b) - b) / (pi mu_s).
+/// Both readings must be there. Errors: those of normalise, of the standard's reach; IncompleteData (no light from the
+/// reference).
+[[nodiscard]] Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& readings,
+                                         const EquationContext& context);
+
+}  // namespace gonio::calibration

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "calibration/background_history.h"
+#include "calibration/calibrate.h"
+#include "calibration/dark_history.h"
+#include "calibration/drift_history.h"
+#include "calibration/instrument_model.h"
+#include "calibration/normalised_reading.h"
+#include "calibration/raw_reading.h"
+
+namespace gonio::calibration {
+
+/// What all readings of a scan are seen by: darks, ambient light, stray light, drift; each as its visits found it.
+/// Neither copied nor moved, for readings point into it. Threads: any.
+class ScanHistories {
+ public:
+  /// `instrument` must outlive it.
+  ScanHistories(const ScanReadings& scan, const InstrumentModel& instrument, const CalibrationOptions& options);
+  ScanHistories(const ScanHistories&) = delete;
+  ScanHistories& operator=(const ScanHistories&) = delete;
+
+  [[nodiscard]] const ReadingContext& context() const { return context_; }
+  [[nodiscard]] std::optional<DriftLevel> drift_at(Instant when) const {
+    return drift_ ? drift_->at(when) : std::nullopt;
+  }
+  [[nodiscard]] bool has_trap_visits() const { return !stray_.is_empty(); }
+
+ private:
+  DarkHistory darks_;
+  BackgroundHistory ambient_;
+  BackgroundHistory stray_;
+  ReadingContext context_;
+  std::optional<DriftHistory> drift_;
+};
+
+}  // namespace gonio::calibration
