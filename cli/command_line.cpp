@@ -43,6 +43,7 @@ class CommandLine {
     add_replay();
     CLI::App& reference = group("reference", "reference standards");
     leaf(reference, "list", "the standards this daemon knows", Verb::ReferenceList);
+    add_calibration();
   }
 
   [[nodiscard]] CLI::App& app() { return app_; }
@@ -135,6 +136,9 @@ class CommandLine {
         scan_leaf(scan, "compare", "two scans of one plan, point by point in units of U", Verb::ScanCompare);
     compare.add_option("other", wanted_.other_scan, "the other scan's number")->required()->check(CLI::PositiveNumber);
     scan_leaf(scan, "repeat", "run a scan's plan again, and compare", Verb::ScanRepeat);
+    scan_leaf(scan, "recompute", "its BRDF anew from the stored readings, without the instrument", Verb::ScanRecompute)
+        .add_option("--calibration", wanted_.recompute.calibration,
+                    "versions as \"3 5\", or none for instrument.toml alone (those that count now)");
   }
 
   void add_scan_change(CLI::App& scan) {
@@ -148,6 +152,26 @@ class CommandLine {
     change.add_option("--priority", to.priority, "higher ones run first")->check(CLI::Range(-100, 100));
     change.add_option("--at", to.start_utc, "of a queued scan: not before this time, in UTC: 2026-11-22T18:05Z");
     change.add_option("--reason", to.reason, "for the record");
+  }
+
+  CLI::App& version_leaf(CLI::App& parent, const std::string& name, const std::string& help, Verb verb) {
+    CLI::App& made = *leaf(parent, name, help, verb);
+    made.add_option("version", wanted_.scan, "the calibration's version")->required()->check(CLI::PositiveNumber);
+    return made;
+  }
+
+  void add_calibration() {
+    CLI::App& calibration = group("calibration", "what calibration jobs have found");
+    leaf(calibration, "list", "all of it, newest first, and what counts", Verb::CalibrationList);
+    version_leaf(calibration, "show", "one version: values, u, correlations, history", Verb::CalibrationShow);
+    CLI::App& use =
+        version_leaf(calibration, "use", "from now on this version of its job counts", Verb::CalibrationUse);
+    use.add_flag_callback(
+        "--end", [this] { wanted_.use.in_use = false; }, "it counts no more: instrument.toml alone, for its job");
+    use.add_option("--reason", wanted_.use.reason, "for the record");
+    leaf(calibration, "chart", "the control chart of a check standard", Verb::CalibrationChart)
+        ->add_option("standard", wanted_.standard, "its name: the sample of its plans")
+        ->required();
   }
 
   void add_replay() {

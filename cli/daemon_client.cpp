@@ -14,10 +14,9 @@ constexpr int kMostFailuresInARow = 20;
 constexpr int kBetweenFailuresMs = 500;
 
 std::string path_of(api::RouteId id, std::int64_t scan, const std::string& query) {
-  constexpr std::string_view kScan = "{scan}";
   std::string path(api::route(id).path);
-  if (const std::size_t at = path.find(kScan); at != std::string::npos) {
-    path.replace(at, kScan.size(), std::to_string(scan));
+  if (const std::size_t at = path.find('{'); at != std::string::npos) {
+    path.replace(at, path.find('}') + 1 - at, std::to_string(scan));
   }
   return query.empty() ? path : path + "?" + query;
 }

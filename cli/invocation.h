@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "cli/output.h"
 #include "cli/replay_program.h"
+#include "protocol/api/calibration_reports.h"
 #include "protocol/api/requests.h"
 
 namespace gonio::cli {
@@ -40,6 +41,11 @@ enum class Verb : std::uint8_t {
   Doctor,
   Events,
   DetectorRead,
+  CalibrationList,
+  CalibrationShow,
+  CalibrationUse,
+  CalibrationChart,
+  ScanRecompute,
 };
 
 /// What the command line asks for.
@@ -65,6 +71,9 @@ struct Invocation {
   std::string key;            ///< Idempotency-Key; empty: a new one
   api::MoveRequest target;    ///< of a move by hand
   api::DetectorReadRequest reading;
+  api::UseCalibrationRequest use;
+  api::RecomputeRequest recompute;
+  std::string standard;  ///< of a chart
 };
 
 /// Something to be printed instead: help or version (to standard output, exit code 0), or why the line is wrong (2).

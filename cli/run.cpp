@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "base/clock.h"
+#include "cli/calibration_views.h"
 #include "cli/daemon_client.h"
 #include "cli/doctor/doctor.h"
 #include "cli/doctor/findings_view.h"
@@ -29,6 +30,23 @@ std::string new_key() {
   constexpr std::string_view kHex = "0123456789abcdef";
   for (const unsigned char byte : bytes) key += {kHex[byte >> 4U], kHex[byte & 15U]};
   return key;
+}
+
+// RFC 3986: all but the unreserved as %XX.
+std::string url(const std::string& text) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string escaped;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+                          c == '.' || c == '_' || c == '~';
+    if (is_plain) {
+      escaped += c;
+    } else {
+      escaped += {'%', kHex[byte >> 4U], kHex[byte & 15U]};
+    }
+  }
+  return escaped;
 }
 
 // One invocation at work.
@@ -93,6 +111,18 @@ class Runner {
         return run_doctor();
       case Verb::Events:
         return list_events();
+      case Verb::CalibrationList:
+        return show_list(
+            client_.get<api::CalibrationList>(RouteId::Calibrations),
+            [](const api::CalibrationList& list) -> const auto& { return list.calibrations; });
+      case Verb::CalibrationShow:
+        return show(client_.get<api::CalibrationReport>(RouteId::CalibrationOne, wanted_.scan));
+      case Verb::CalibrationUse:
+        return use_calibration();
+      case Verb::CalibrationChart:
+        return show_chart();
+      case Verb::ScanRecompute:
+        return recompute_scan();
     }
     return 0;
   }
@@ -140,6 +170,44 @@ class Runner {
 
   Result<int> command(RouteId route, const std::string& body) {
     return show(client_.post<api::CommandReport>(route, wanted_.scan, body));
+  }
+
+  Result<int> use_calibration() {
+    const Result<int> done = command(RouteId::CalibrationUse, api::to_json(wanted_.use));
+    if (!done) return done;
+    world_.err << (wanted_.use.in_use ? "calibration " + std::to_string(wanted_.scan) + " counts from now on"
+                                      : "calibration " + std::to_string(wanted_.scan) + " counts no more")
+               << "; a scan that was computed before: gonioctl scan recompute SCAN\n";
+    return done;
+  }
+
+  // Exit code 1: the last run breaks a rule.
+  Result<int> show_chart() {
+    const auto chart = client_.get<api::ChartReport>(RouteId::CalibrationChart, 0, "standard=" + url(wanted_.standard));
+    if (!chart) return failure(chart.error());
+    if (wanted_.format == Format::Json || wanted_.format == Format::Jsonl) {
+      world_.out << chart->text << '\n';
+    } else if (wanted_.format == Format::Csv) {
+      print_csv(world_.out, view(chart->value));
+    } else {
+      print_table(world_.out, view(chart->value));
+    }
+    world_.err << chart_sentence(chart->value) << '\n';
+    return chart->value.points.empty() || chart->value.points.back().broken.empty() ? 0 : 1;
+  }
+
+  // The daemon answers when it is sure to be computed, and says by an event when it is there.
+  Result<int> recompute_scan() {
+    const auto before = client_.get<api::StatusReport>(RouteId::Status);
+    if (!before) return failure(before.error());
+    const auto asked =
+        client_.post<api::CommandReport>(RouteId::ScanRecompute, wanted_.scan, api::to_json(wanted_.recompute));
+    if (!asked) return failure(asked.error());
+    const Result<void> listened = client_.events(before->value.last_event, [&](const api::Event& event) {
+      return event.kind != "brdf-computed" || event.scan != wanted_.scan;
+    });
+    if (!listened) return failure(listened.error());
+    return show(client_.get<api::ScanReport>(RouteId::ScanOne, wanted_.scan));
   }
 
   Result<std::string> submission() {

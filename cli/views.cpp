@@ -219,6 +219,7 @@ Table view(const api::ScanReport& scan) {
       .add("idle_of_it_s", idle_text(scan.seconds_a_point.idle_by))
       .add("to_go", scan.remaining_s ? duration_text(*scan.remaining_s) : "")
       .add("brdf_values", scan.brdf_values ? std::to_string(*scan.brdf_values) : "")
+      .add("calibrations", scan.calibrations ? (scan.calibrations->empty() ? "none" : *scan.calibrations) : "")
       .add("median_U", percent_text(scan.median_relative_u))
       .add("worst_U", percent_text(scan.worst_relative_u))
       .add("instrument_sha256", scan.instrument_sha256);

@@ -42,7 +42,7 @@ std::string inputs_json(const ScanTexts& texts, const std::string& inputs) {
 
 }  // namespace
 
-Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan) {
+Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan, const AskedVersions& asked) {
   const Result<ScanInfo> info = reader.scan(scan);
   if (!info) return failure(info.error());
   const Result<ScanTexts> texts = reader.texts(scan);
@@ -53,11 +53,16 @@ Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan) {
   if (!standard) return failure(standard.error());
   const Result<calibration::ScanReadings> readings = reader.readings(scan, instrument->stage);
   if (!readings) return failure(readings.error());
-  const auto calibrated = calibration::calibrate(*readings, instrument->model, *standard, info->submitted);
+  const Result<std::vector<FoundCalibration>> found = reader.found_calibrations();
+  if (!found) return failure(found.error());
+  const Result<ModelOfVersions> chosen = model_with(*found, asked, *instrument, *readings);
+  if (!chosen) return failure(chosen.error());
+  const auto calibrated = calibration::calibrate(*readings, chosen->model, *standard, info->submitted);
   if (!calibrated) return failure(calibrated.error());
   NewBrdf brdf{.scan = scan,
                .code_version = std::string(calibration::kCalibrationCode),
-               .inputs_json = inputs_json(*texts, calibration::describe_inputs(instrument->model, *standard))};
+               .inputs_json = inputs_json(*texts, calibration::describe_inputs(chosen->model, *standard))};
+  brdf.versions = chosen->versions;
   for (const calibration::Component& component : calibrated->components) {
     brdf.component_names.push_back(component_text(component));
   }
@@ -74,7 +79,13 @@ Result<BrdfInfo> brdf_of(StoreReader& reader, ScanId scan) {
                   .code_version = std::move(computed->code_version),
                   .inputs_json = std::move(computed->inputs_json),
                   .component_names = std::move(computed->component_names),
-                  .rows = std::move(computed->rows)};
+                  .rows = std::move(computed->rows),
+                  .versions = std::move(computed->versions)};
+}
+
+bool is_drawn_anew(std::string_view component) {
+  return component.starts_with("dark ") || component.starts_with("reference visit ") ||
+         component.starts_with("drift between visits ");
 }
 
 StoredBudget budget_of(const BrdfRow& row) {

@@ -2,17 +2,21 @@
 
 #include "base/result.h"
 #include "calibration/calibrated_scan.h"
+#include "daemon/app/version_desk.h"
 #include "daemon/store/records.h"
 #include "daemon/store/store_reader.h"
 
 namespace gonio::daemon {
 
-/// The BRDF of what a scan has so far, from its stored readings and the texts it was accepted with: nothing else
-/// counts. Errors: those of the store, of the texts, of calibrate.
-[[nodiscard]] Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan);
+/// The BRDF of what a scan has so far, from its stored readings, the texts it was accepted with and what calibration
+/// jobs have found: nothing else counts. Errors: those of the store, of the texts, of model_with, of calibrate.
+[[nodiscard]] Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan, const AskedVersions& asked = {});
 
 /// The newest stored BRDF, or the one of what there is so far.
 [[nodiscard]] Result<BrdfInfo> brdf_of(StoreReader& reader, ScanId scan);
+
+/// Whether each scan draws this component anew; every other shared part is the instrument's or the standard's.
+[[nodiscard]] bool is_drawn_anew(std::string_view component);
 
 /// Uncertainties of a stored value, put together again.
 struct StoredBudget {

@@ -9,11 +9,14 @@
 #include "daemon/app/completion_desk.h"
 #include "daemon/app/hand_reading_report.h"
 #include "daemon/app/instrument_report.h"
+#include "daemon/app/job_desk.h"
 #include "daemon/app/plan_desk.h"
 #include "daemon/app/plan_outlook.h"
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
+#include "daemon/app/version_desk.h"
 #include "daemon/planner/order_report.h"
+#include "daemon/store/version_list.h"
 
 namespace gonio::daemon {
 namespace {
@@ -270,6 +273,31 @@ void DaemonService::complete_missing(std::int64_t scan, const std::string& who, 
   command(who, SubmitScan{std::move(*missing)}, std::move(reply));
 }
 
+void DaemonService::use_calibration(std::int64_t version, const api::UseCalibrationRequest& request,
+                                    const std::string& who, Reply<api::CommandReport> reply) {
+  const auto found = ask_store([version](StoreReader& store) { return found_version(store, version); });
+  if (!found) return reply(failure(found.error()));
+  if (!changes_scans(found->job)) {
+    return reply(failure({.code = ErrorCode::InvalidInput,
+                          .device = "calibration",
+                          .tried = fmt::format("use calibration {}", version),
+                          .seen = "it is a run of a check standard, which changes no scan",
+                          .limit = "gonioctl calibration chart shows it"}));
+  }
+  command(who, UseCalibration{.version = version, .in_use = request.in_use, .reason = request.reason},
+          std::move(reply));
+}
+
+// Computed once to refuse at once what cannot be; what is stored is computed when the command is durable.
+void DaemonService::recompute_scan(std::int64_t scan, const api::RecomputeRequest& request, const std::string& who,
+                                   Reply<api::CommandReport> reply) {
+  const Result<AskedVersions> asked = asked_versions_from(request.calibration);
+  if (!asked) return reply(failure(asked.error()));
+  const auto brdf = ask_store([&](StoreReader& store) { return compute_brdf(store, scan, *asked); });
+  if (!brdf) return reply(failure(brdf.error()));
+  command(who, RecomputeScan{.scan = scan, .versions = *asked}, std::move(reply));
+}
+
 std::optional<Error> DaemonService::is_over_for(std::int64_t scan, ScanAsk ask) {
   const Result<ScanInfo> info = ask_store([scan](StoreReader& store) { return store.scan(scan); });
   if (!info) return info.error().code == ErrorCode::NotFound ? std::optional(info.error()) : std::nullopt;
@@ -386,6 +414,7 @@ Result<api::ScanReport> DaemonService::scan(std::int64_t scan) {
   if (!brdf) return report;  // the scan is there all the same; GET brdf says why it has no values
   const RelativeUncertainty u = relative_uncertainty(*brdf);
   report.brdf_values = u.values;
+  report.calibrations = version_list_text(brdf->versions);
   report.median_relative_u = u.median;
   report.worst_relative_u = u.worst;
   return report;
@@ -432,6 +461,26 @@ Result<api::ReferenceList> DaemonService::references() {
     list.references.push_back(std::move(report));
   }
   return list;
+}
+
+Result<api::CalibrationList> DaemonService::calibrations() {
+  const auto found = ask_store([](StoreReader& store) { return store.found_calibrations(); });
+  if (!found) return failure(found.error());
+  api::CalibrationList list;
+  for (auto one = found->rbegin(); one != found->rend(); ++one) {
+    list.calibrations.push_back(calibration_report(*one));
+  }
+  return list;
+}
+
+Result<api::CalibrationReport> DaemonService::calibration(std::int64_t version) {
+  const auto found = ask_store([version](StoreReader& store) { return found_version(store, version); });
+  if (!found) return failure(found.error());
+  return calibration_report(*found);
+}
+
+Result<api::ChartReport> DaemonService::calibration_chart(const std::string& standard) {
+  return ask_store([&](StoreReader& store) { return chart_of(store, standard); });
 }
 
 api::InstrumentReport DaemonService::instrument() {

@@ -44,6 +44,14 @@ class DaemonService final : public Service {
                    Reply<api::CommandReport> reply) override;
   void complete_missing(std::int64_t scan, const std::string& who, Reply<api::CommandReport> reply) override;
 
+  void use_calibration(std::int64_t version, const api::UseCalibrationRequest& request, const std::string& who,
+                       Reply<api::CommandReport> reply) override;
+  void recompute_scan(std::int64_t scan, const api::RecomputeRequest& request, const std::string& who,
+                      Reply<api::CommandReport> reply) override;
+  Result<api::CalibrationList> calibrations() override;
+  Result<api::CalibrationReport> calibration(std::int64_t version) override;
+  Result<api::ChartReport> calibration_chart(const std::string& standard) override;
+
   Result<api::StatusReport> status() override;
   api::HealthReport health() override;
   std::string metrics() override;

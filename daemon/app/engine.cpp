@@ -8,6 +8,7 @@
 
 #include "daemon/app/calibration_desk.h"
 #include "daemon/app/event_sentence.h"
+#include "daemon/app/job_desk.h"
 #include "daemon/app/log.h"
 #include "daemon/tape/tape_input.h"
 
@@ -30,8 +31,8 @@ bool is_of_the_link(const Error& error) {
          code == ErrorCode::WrongDevice;
 }
 
-bool ends_a_scan(const EventRecord& event) {
-  return event.kind == "scan-done" || event.kind == "scan-finished-early";
+bool asks_for_brdf(const EventRecord& event) {
+  return event.kind == "scan-done" || event.kind == "scan-finished-early" || event.kind == "recompute-asked";
 }
 
 }  // namespace
@@ -280,24 +281,31 @@ void Engine::publish(const EventRecord& event) {
   const bool is_of_an_item = event.kind.starts_with("item-");
   is_of_an_item ? log_debug(event_sentence(event)) : log_info(event_sentence(event));
   on_event_(event);
-  if (!ends_a_scan(event)) return;
+  if (!asks_for_brdf(event)) return;
+  const AskedVersions asked = asked_versions_of(event);
   if (config_.by_hand_from) {
-    compute_brdf_of(event.scan);  // the tape says when the store takes it
-  } else if (!calibrator_->post([this, scan = event.scan] { compute_brdf_of(scan); })) {
+    compute_brdf_of(event.scan, asked);  // the tape says when the store takes it
+  } else if (!calibrator_->post([this, scan = event.scan, asked] { compute_brdf_of(scan, asked); })) {
     log_warning(fmt::format("scan {}: its BRDF is computed when it is asked for", event.scan));
   }
 }
 
 // Runs on the calibrator's thread, on its own connection to the store.
-void Engine::compute_brdf_of(ScanId scan) {
+void Engine::compute_brdf_of(ScanId scan, const AskedVersions& asked) {
   const Result<std::unique_ptr<StoreReader>> reader = StoreReader::open(config_.store_file);
-  Result<NewBrdf> brdf = reader ? compute_brdf(**reader, scan) : failure(reader.error());
+  Result<NewBrdf> brdf = reader ? compute_brdf(**reader, scan, asked) : failure(reader.error());
   if (!brdf) {
     log_error(fmt::format("scan {}: no BRDF: {}", scan, describe(brdf.error())));
     return;
   }
   log_info(fmt::format("scan {}: BRDF of {} points by {}", scan, brdf->rows.size(), brdf->code_version));
+  Result<std::optional<NewFoundCalibration>> found = fit_job(**reader, scan, *brdf);
   StoreTransaction transaction{.at = now(), .writes = {std::move(*brdf)}};
+  if (!found) log_error(fmt::format("scan {}: its calibration job found nothing: {}", scan, describe(found.error())));
+  if (found && *found) {
+    transaction.events.push_back(event_found(**found));
+    transaction.writes.emplace_back(std::move(**found));
+  }
   transaction.events.push_back({.kind = "brdf-computed", .scan = scan, .who = "goniod", .json = "{}"});
   if (!store_thread_->post(Commit{SequencerDesk::kOwnTicket, std::move(transaction)})) {
     log_warning(fmt::format("scan {}: its BRDF was not stored; it is computed when it is asked for", scan));

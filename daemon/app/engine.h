@@ -12,6 +12,7 @@
 #include "daemon/app/latest.h"
 #include "daemon/app/pending_replies.h"
 #include "daemon/app/sequencer_desk.h"
+#include "daemon/app/version_desk.h"
 #include "daemon/config/instrument.h"
 #include "daemon/engine/actor_thread.h"
 #include "daemon/engine/detector_actor.h"
@@ -98,7 +99,7 @@ class Engine {
   void on_halt(const HaltPathReport& report);
   void on_reply(const CommandReply& reply);
   void publish(const EventRecord& event);
-  void compute_brdf_of(ScanId scan);
+  void compute_brdf_of(ScanId scan, const AskedVersions& asked);
   void tell(SequencerMessage message);
   void run_sequencer();
   std::optional<Instant> step_sequencer();

@@ -10,6 +10,7 @@
 #include "calibration/calibrated_scan.h"
 #include "daemon/app/calibration_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/store/version_list.h"
 
 namespace gonio::daemon {
 namespace {
@@ -53,17 +54,11 @@ std::string status_without_value(const PointInfo& info) {
   return both ? "refused" : "unmeasured";
 }
 
-// Each scan visits the dark and the standard anew; every other shared part is the instrument's or the standard's.
-bool is_own(std::string_view component) {
-  return component.starts_with("dark ") || component.starts_with("reference visit ") ||
-         component.starts_with("drift between visits ");
-}
-
 double own_u(const BrdfRow& row, const std::vector<std::string>& component_names) {
   double variance = row.u_random_per_sr * row.u_random_per_sr;
   for (std::size_t i = 0; i + 1 < row.sensitivities_per_sr.size(); i += 2) {
     const auto component = static_cast<std::size_t>(row.sensitivities_per_sr[i]);
-    if (component < component_names.size() && is_own(component_names[component])) {
+    if (component < component_names.size() && is_drawn_anew(component_names[component])) {
       variance += row.sensitivities_per_sr[i + 1] * row.sensitivities_per_sr[i + 1];
     }
   }
@@ -149,6 +144,8 @@ std::string metadata(const ScanInfo& info, const ScanTexts& texts, const BrdfInf
   add("reference_sha256", texts.reference_sha256);
   add("reference_mode", "same-geometry");
   add("calibration", brdf.code_version + ", " + brdf.inputs_json);
+  add("calibration_versions",
+      brdf.versions.empty() ? "none: by instrument.toml alone" : version_list_text(brdf.versions));
   add("software", software);
   if (const Result<Instrument> instrument = parse_instrument(texts.instrument, "instrument.toml")) {
     add("detector_half_cone_deg", fmt::format("{:.6g}", in_degrees(instrument->cones.detector_half)));

@@ -40,7 +40,8 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
 
 bool is_slow(RouteId id) {
   return id == RouteId::PlanCheck || id == RouteId::ScanSubmit || id == RouteId::ScanBrdf ||
-         id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing;
+         id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing ||
+         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
@@ -158,6 +159,15 @@ void Gateway::run_command(const HttpRequest& request, const RouteMatch& match,
       const Result<api::ChangeRequest> change = api::request_from_json<api::ChangeRequest>(request.body);
       return change ? service_.change_rest(match.scan, *change, request.who, reply) : refused(change.error());
     }
+    case RouteId::CalibrationUse: {
+      const auto use = api::request_from_json<api::UseCalibrationRequest>(request.body);
+      return use ? service_.use_calibration(match.scan, *use, request.who, reply) : refused(use.error());
+    }
+    case RouteId::ScanRecompute: {
+      const auto recompute = api::request_from_json<api::RecomputeRequest>(request.body);
+      return recompute ? service_.recompute_scan(match.scan, *recompute, request.who, reply)
+                       : refused(recompute.error());
+    }
     case RouteId::ScanCompleteMissing:
       return service_.complete_missing(match.scan, request.who, reply);
     default: {
@@ -204,6 +214,14 @@ HttpResponse Gateway::read(const HttpRequest& request, const RouteMatch& match) 
       }
       Result<std::string> csv = service_.export_csv(match.scan);
       return csv ? success(api::kCsv, std::move(csv).value()) : problem(csv.error());
+    }
+    case RouteId::Calibrations:
+      return json_response(service_.calibrations());
+    case RouteId::CalibrationOne:
+      return json_response(service_.calibration(match.scan));
+    case RouteId::CalibrationChart: {
+      const auto standard = request.query.find("standard");
+      return json_response(service_.calibration_chart(standard == request.query.end() ? "" : standard->second));
     }
     case RouteId::Instrument:
       return success(api::kJson, api::to_json(service_.instrument()));

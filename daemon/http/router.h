@@ -12,7 +12,7 @@ namespace gonio::daemon {
 /// What a method and a path lead to.
 struct RouteMatch {
   const api::Route* route = nullptr;  ///< null: none
-  std::int64_t scan = 0;              ///< of `{scan}` in the path
+  std::int64_t scan = 0;              ///< the number in the path: of `{scan}`, `{job}`
   std::string allowed;  ///< without a route: the methods that this path has, "GET, POST"; empty: no such path
 };
 

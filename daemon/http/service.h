@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "protocol/api/calibration_reports.h"
 #include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
 #include "protocol/api/requests.h"
@@ -53,6 +54,13 @@ class Service {
   /// Queues a new scan of what an ended one lacks; the reply names the new one.
   virtual void complete_missing(std::int64_t scan, const std::string& who, Reply<api::CommandReport> reply) = 0;
 
+  /// Errors: NotFound (no such version), InvalidInput (its job changes no scan).
+  virtual void use_calibration(std::int64_t version, const api::UseCalibrationRequest& request, const std::string& who,
+                               Reply<api::CommandReport> reply) = 0;
+  /// Errors: NotFound, those of the computation, and NotRecomputable (a step that needs frames, which are not kept).
+  virtual void recompute_scan(std::int64_t scan, const api::RecomputeRequest& request, const std::string& who,
+                              Reply<api::CommandReport> reply) = 0;
+
   [[nodiscard]] virtual Result<api::StatusReport> status() = 0;
   [[nodiscard]] virtual api::HealthReport health() = 0;
   /// In the Prometheus text format.
@@ -68,6 +76,11 @@ class Service {
   [[nodiscard]] virtual Result<std::string> export_csv(std::int64_t scan) = 0;
   [[nodiscard]] virtual Result<api::ReferenceList> references() = 0;
   [[nodiscard]] virtual api::InstrumentReport instrument() = 0;
+  [[nodiscard]] virtual Result<api::CalibrationList> calibrations() = 0;
+  /// Errors: NotFound.
+  [[nodiscard]] virtual Result<api::CalibrationReport> calibration(std::int64_t version) = 0;
+  /// Errors: NotFound (no run of such a check standard).
+  [[nodiscard]] virtual Result<api::ChartReport> calibration_chart(const std::string& standard) = 0;
   /// Committed events with number > `after`, in order.
   [[nodiscard]] virtual Result<std::vector<api::Event>> events(std::int64_t after, int at_most) = 0;
 };

@@ -82,8 +82,22 @@ struct ReadDetector {
   std::optional<bool> lit;           ///< both shutters open, or the detector's closed; nothing: as they stand
 };
 
+/// From now on what a calibration job has found counts, or (`in_use` false) does no more.
+struct UseCalibration {
+  CalibrationVersion version = 0;
+  bool in_use = true;
+  std::string reason{};
+};
+/// The BRDF of a scan is computed anew, without the instrument, once this is durable: with these versions of what
+/// calibration jobs have found, or (none) with those that count then. What was computed before stays. Of a job's own
+/// scan the job is fitted anew too.
+struct RecomputeScan {
+  ScanId scan = 0;
+  std::optional<std::vector<CalibrationVersion>> versions{};
+};
+
 using Verb = std::variant<SubmitScan, PauseScan, ResumeScan, FinishScan, AbortScan, SkipItemInHand, MoveStage,
-                          HomeStage, ClearStage, ReadDetector, ChangeScan>;
+                          HomeStage, ClearStage, ReadDetector, ChangeScan, UseCalibration, RecomputeScan>;
 
 struct Command {
   CommandId id = 0;

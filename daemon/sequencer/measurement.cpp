@@ -94,7 +94,7 @@ Measurement::Verdict Measurement::add_stated(const calibration::RegionMoments& r
     return_to(stated_[tried_++]);
     return Verdict::More;
   }
-  return repeat_longest(region.n, chooser);
+  return comes_down() ? Verdict::Done : repeat_longest(region.n, chooser);
 }
 
 // A rung counts whole or not at all: to keep just those frames that noise left below full scale would bias the mean.
@@ -102,10 +102,16 @@ Measurement::Verdict Measurement::drop_stated_rung(ExposureChooser& chooser) {
   for (std::size_t k = 0; k < readings_.size(); ++k) {
     if (rung_of_reading_[k] == rung_) readings_[k].used = false;
   }
-  stated_.erase(std::ranges::find(stated_, rung_), stated_.end());
+  const auto tried_end = stated_.begin() + static_cast<std::ptrdiff_t>(tried_);
+  tried_ = static_cast<std::size_t>(std::count_if(stated_.begin(), tried_end, [this](auto r) { return r < rung_; }));
+  std::erase_if(stated_, [this](std::size_t rung) { return rung >= rung_; });
   if (stated_.empty()) return Verdict::Saturated;
-  tried_ = stated_.size();
+  if (tried_ < stated_.size()) {
+    return_to(stated_[tried_++]);
+    return Verdict::More;
+  }
   return_to(stated_.back());
+  if (comes_down()) return Verdict::Done;
   return repeat_longest(readings_.back().region.n, chooser);
 }
 

@@ -17,7 +17,8 @@ class Measurement {
 
   /// Frames of a target until the plan's signal-to-noise is reached: a probe if nothing is known, a lower rung after
   /// saturation. Where the plan states exposures: one frame of each, the shortest first, up to the first that saturates
-  /// (no frame of that rung counts), then more of the longest that does not.
+  /// (no frame of that rung counts), then more of the longest that does not. A list that comes down again is gone through
+  /// once, without what saturates.
   [[nodiscard]] static Measurement of_item(const ExposureChooser& chooser, calibration::Target target, int filter);
   /// `frames` of each rung from `lowest` to `highest`.
   [[nodiscard]] static Measurement of_dark(std::size_t lowest, std::size_t highest, int frames);
@@ -45,6 +46,8 @@ class Measurement {
   Verdict add_saturated();
   Verdict add_lit(std::uint32_t pixels, ExposureChooser& chooser);
   Verdict add_stated(const calibration::RegionMoments& region, ExposureChooser& chooser);
+  /// A ladder up and down: 1 2 4 4 2 1. Each of its steps has its frames, and none gets more.
+  [[nodiscard]] bool comes_down() const { return stated_.size() > 1 && stated_.front() == stated_.back(); }
   Verdict drop_stated_rung(ExposureChooser& chooser);
   Verdict repeat_longest(std::uint32_t pixels, ExposureChooser& chooser);
   void change_rung(std::size_t rung);

@@ -145,6 +145,15 @@ NewEvent event_changed(const ChangeScan& change, const ScanPolicy& policy, const
   return event("scan-changed", change.scan, who, body);
 }
 
+NewEvent event_calibration_used(const UseCalibration& use, const std::string& who) {
+  return event("calibration-used", 0, who, {{"version", use.version}, {"in_use", use.in_use}, {"reason", use.reason}});
+}
+
+NewEvent event_recompute_asked(const RecomputeScan& recompute, const std::string& who) {
+  return event("recompute-asked", recompute.scan, who,
+               {{"versions", recompute.versions ? json(*recompute.versions) : json()}});
+}
+
 NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch) {
   return event("stop", scan, who, {{"epoch", epoch}});
 }

@@ -27,6 +27,8 @@ namespace gonio::daemon {
 /// What was changed, with what it was before.
 [[nodiscard]] NewEvent event_changed(const ChangeScan& change, const ScanPolicy& policy, const ScanTurn& turn,
                                      const std::string& who);
+[[nodiscard]] NewEvent event_calibration_used(const UseCalibration& use, const std::string& who);
+[[nodiscard]] NewEvent event_recompute_asked(const RecomputeScan& recompute, const std::string& who);
 [[nodiscard]] NewEvent event_stop(ScanId scan, const std::string& who, drivers::Epoch epoch);
 
 }  // namespace gonio::daemon

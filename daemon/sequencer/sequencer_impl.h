@@ -247,6 +247,8 @@ struct Sequencer::Impl {
     }
   };
   void run_verb(const Command& c, const ReadDetector& read, Instant now);
+  void run_verb(const Command& c, const UseCalibration& use, Instant now);
+  void run_verb(const Command& c, const RecomputeScan& recompute, Instant now);
   [[nodiscard]] Result<void> check_reading(const ReadDetector& read) const;
   void begin_hand_reading(const drivers::StageState& state);
   void on_hand_shutters(const Result<drivers::StageState>& state);

@@ -118,6 +118,13 @@ json json_of(const ReadDetector& verb) {
           {"lit", or_null(verb.lit)}};
 }
 
+json json_of(const UseCalibration& verb) {
+  return {{"verb", "use-calibration"}, {"version", verb.version}, {"in_use", verb.in_use}, {"reason", verb.reason}};
+}
+json json_of(const RecomputeScan& verb) {
+  return {{"verb", "recompute"}, {"scan", verb.scan}, {"versions", or_null(verb.versions)}};
+}
+
 template <class T>
 std::optional<T> optional_of(const json& value) {
   if (value.is_null()) return std::nullopt;
@@ -234,6 +241,13 @@ Result<Verb> verb_of(const json& words, const Instrument& instrument) {
   if (verb == "home") return HomeStage{};
   if (verb == "reset") return ClearStage{};
   if (verb == "read") return reading_of(words);
+  if (verb == "use-calibration") {
+    return UseCalibration{.version = words.at("version"), .in_use = words.at("in_use"), .reason = words.at("reason")};
+  }
+  if (verb == "recompute") {
+    return RecomputeScan{.scan = words.at("scan"),
+                         .versions = optional_of<std::vector<CalibrationVersion>>(words.at("versions"))};
+  }
   return failure({.code = ErrorCode::InvalidInput,
                   .device = "tape",
                   .tried = "take a command",

@@ -74,7 +74,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 reference_visits, check_visits, measured_again, largest_drift, spent,
                                                 seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
                                                 median_relative_u, worst_relative_u, priority, preempts, start_utc,
-                                                queue_place, completes, completed_by, plan, plan_file, plan_parts)
+                                                queue_place, completes, completed_by, calibrations, plan, plan_file,
+                                                plan_parts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(WarmUpReport, slope_percent_per_min, limit_percent_per_min, waited_s,
                                                 at_least_s, at_most_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
@@ -97,6 +98,16 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanList, scans)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceReport, serial, material, file, certificate_date, expires,
                                                 error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceList, references)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(FoundValueReport, name, unit, value, u)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CalibrationUseReport, utc, who, in_use, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CalibrationReport, version, job, scan, sample, counts, utc,
+                                                code_version, note, values, covariance, inputs, uses)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CalibrationList, calibrations)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ChartPointReport, scan, version, utc, value, u, deviation, broken)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ChartReport, standard, quantity, baseline, centre, sd, low, high,
+                                                verdict, points)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(UseCalibrationRequest, in_use, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(RecomputeRequest, calibration)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AxisLimits, name, unit, low, high, speed_per_s, acceleration_per_s2,
                                                 settle_s, window)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(FilterReport, slot, centroid_nm, fwhm_nm, side)
@@ -239,6 +250,9 @@ GONIO_REPORT(BrdfPage);
 GONIO_REPORT(ScanList);
 GONIO_REPORT(ReferenceReport);
 GONIO_REPORT(ReferenceList);
+GONIO_REPORT(CalibrationReport);
+GONIO_REPORT(CalibrationList);
+GONIO_REPORT(ChartReport);
 GONIO_REPORT(InstrumentReport);
 GONIO_REPORT(Event);
 GONIO_REPORT(StopReport);
@@ -251,6 +265,8 @@ GONIO_REQUEST(PauseRequest);
 GONIO_REQUEST(AbortRequest);
 GONIO_REQUEST(ResumeRequest);
 GONIO_REQUEST(ChangeRequest);
+GONIO_REQUEST(UseCalibrationRequest);
+GONIO_REQUEST(RecomputeRequest);
 GONIO_REQUEST(NoWords);
 
 }  // namespace api

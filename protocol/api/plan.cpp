@@ -151,8 +151,9 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file,
   plan.sample = needed_text(scan, "sample");
   plan.isotropic = scan.flag_or("isotropic", true);
   Result<void> listed;
-  read_geometry(root->table("geometry"), files, plan, listed);
+  if (!read_calibration(*root, plan)) read_geometry(root->table("geometry"), files, plan, listed);
   read_reading(*root, plan);
+  make_ladder(*root, plan);
   read_reference(root->table("reference"), plan);
   read_visits(*root, plan);
   read_order(*root, plan);

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "base/units.h"
+#include "protocol/api/plan_calibration.h"
 #include "protocol/api/plan_part.h"
 
 namespace gonio::api {
@@ -37,8 +38,10 @@ struct Plan {
   std::optional<bool> relative_azimuth;  ///< whether phi_r counts from phi_i; none: if the sample is isotropic
   double target_snr = 300.0;             ///< of one reading
   Duration max_time{};                   ///< of one reading, exposure times frames
-  std::vector<Duration> exposures;  ///< [reading] exposure_s, ascending: one is fixed, several bracket; empty: chosen
-  std::string reference_standard;   ///< serial number
+  /// [reading] exposure_s, ascending: one is fixed, several bracket; empty: chosen. Of a linearity job up and down
+  /// again.
+  std::vector<Duration> exposures;
+  std::string reference_standard;  ///< serial number
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
   Duration block{};            ///< sample items and their reference partners lie within this time
   Duration dark_every{};       ///< visits
@@ -51,6 +54,7 @@ struct Plan {
   int item_retries = 2;  ///< on_error.item = "retry N, then skip|hold|fail"
   OnItemError on_item_error = OnItemError::Skip;
   OnRestart on_restart = OnRestart::Resume;
+  std::optional<PlanCalibration> calibration;  ///< the job that this scan is measured for
 };
 
 /// Errors: InvalidInput, UnknownKey, MissingKey, with file, line, field and nearest name. `file` is the user's name for

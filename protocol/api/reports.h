@@ -111,6 +111,7 @@ struct ScanReport {
   std::optional<std::int64_t> queue_place;        ///< while queued: 1 is next, were all allowed to start
   std::int64_t completes = 0;                     ///< the scan whose missing points these are; 0: none
   std::int64_t completed_by = 0;                  ///< the newest scan made of its missing points; 0: none
+  std::optional<std::string> calibrations;        ///< versions that its BRDF was computed with, once it was: "3 5"
   std::optional<std::string> plan;                ///< as it was sent; of one scan asked for, not in lists
   std::optional<std::string> plan_file;           ///< the user's name for it; likewise
   std::map<std::string, std::string> plan_parts;  ///< the files that the plan names, by name; likewise

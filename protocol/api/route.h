@@ -42,6 +42,11 @@ enum class RouteId : std::uint8_t {
   Instrument,
   Events,
   DetectorRead,
+  Calibrations,
+  CalibrationOne,
+  CalibrationUse,
+  CalibrationChart,
+  ScanRecompute,
 };
 
 /// One way into the daemon. `{scan}` in a path stands for a scan's number.
@@ -101,6 +106,14 @@ inline constexpr std::array kRoutes{
     Route{RouteId::Events, Method::Get, "/api/v1/events", Permission::Viewer, "", kEventStream, false, 0},
     Route{RouteId::DetectorRead, Method::Post, "/api/v1/detector/read", Permission::Operator, kJson, kJson, true,
           kSmallBody},
+    Route{RouteId::Calibrations, Method::Get, "/api/v1/calibrations", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::CalibrationOne, Method::Get, "/api/v1/calibrations/{version}", Permission::Viewer, "", kJson, false,
+          0},
+    Route{RouteId::CalibrationUse, Method::Post, "/api/v1/calibrations/{version}/use", Permission::Operator, kJson,
+          kJson, true, kSmallBody},
+    Route{RouteId::CalibrationChart, Method::Get, "/api/v1/calibration-chart", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::ScanRecompute, Method::Post, "/api/v1/scans/{scan}/recompute", Permission::Operator, kJson, kJson,
+          true, kSmallBody},
 };
 
 constexpr bool routes_are_in_order() {

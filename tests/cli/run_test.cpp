@@ -252,5 +252,35 @@ TEST_F(Gonioctl, ShowsTheInstrumentAsTheDaemonWasToldOfIt) {
   EXPECT_THAT(out_.str(), HasSubstr("0 to 85 deg, 20 deg/s, 40 deg/s^2, settles in 0.1 s within +- 0.01 deg"));
 }
 
+TEST_F(Gonioctl, ListsWhatCalibrationJobsHaveFoundToTheSecondDigitOfU) {
+  EXPECT_EQ(run({"calibration", "list"}), 0);
+
+  EXPECT_THAT(out_.str(), HasSubstr("arm-zeros"));
+  EXPECT_THAT(out_.str(), HasSubstr("zero_theta_i_deg 0.0123 +- 0.0021 deg"));
+}
+
+TEST_F(Gonioctl, ShowsOneCalibrationAndSaysThatThereIsNoOther) {
+  EXPECT_EQ(run({"calibration", "show", "2"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("mirror M1"));
+
+  EXPECT_EQ(run({"calibration", "show", "9"}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("no such version"));
+}
+
+TEST_F(Gonioctl, UsesACalibrationAndEndsItsUseWithAReason) {
+  EXPECT_EQ(run({"calibration", "use", "2"}), 0);
+  EXPECT_THAT(err_.str(), HasSubstr("calibration 2 counts from now on"));
+  EXPECT_EQ(run({"calibration", "use", "2", "--end", "--reason", "arm taken apart"}), 0);
+  EXPECT_THAT(err_.str(), HasSubstr("counts no more"));
+
+  EXPECT_THAT(service_.asked(), ElementsAre("use 2 yes [] local", "use 2 no [arm taken apart] local"));
+}
+
+TEST_F(Gonioctl, ChartsACheckStandardWhateverItsName) {
+  EXPECT_EQ(run({"calibration", "chart", "tile & blue 7"}), 0);
+
+  EXPECT_THAT(err_.str(), HasSubstr("tile & blue 7, mean REFF: in control"));
+}
+
 }  // namespace
 }  // namespace gonio::cli

@@ -36,5 +36,20 @@ TEST(TapeInput, KeepsARangeAndLeavesOpenWhatWasLeftOpen) {
   EXPECT_FALSE(read.lit);
 }
 
+TEST(TapeInput, KeepsWhatCountsAsCalibrationAndWhatIsComputedAnew) {
+  const auto use = std::get<UseCalibration>(
+      std::get<Command>(there_and_back(UseCalibration{.version = 5, .in_use = false, .reason = "bent"})).verb);
+  const auto with = std::get<RecomputeScan>(
+      std::get<Command>(there_and_back(RecomputeScan{.scan = 3, .versions = {{5, 7}}})).verb);
+  const auto open = std::get<RecomputeScan>(std::get<Command>(there_and_back(RecomputeScan{.scan = 3})).verb);
+
+  EXPECT_EQ(use.version, 5);
+  EXPECT_FALSE(use.in_use);
+  EXPECT_EQ(use.reason, "bent");
+  EXPECT_EQ(with.scan, 3);
+  EXPECT_EQ(with.versions, (std::vector<CalibrationVersion>{5, 7}));
+  EXPECT_FALSE(open.versions);
+}
+
 }  // namespace
 }  // namespace gonio::daemon

@@ -73,6 +73,36 @@ class FakeService final : public daemon::Service {
     reply(api::CommandReport{.scan = scan + 1});
   }
 
+  void use_calibration(std::int64_t version, const api::UseCalibrationRequest& request, const std::string& who,
+                       daemon::Reply<api::CommandReport> reply) override {
+    note("use " + std::to_string(version) + (request.in_use ? " yes [" : " no [") + request.reason + "] " + who);
+    reply(api::CommandReport{});
+  }
+  void recompute_scan(std::int64_t scan, const api::RecomputeRequest& request, const std::string& who,
+                      daemon::Reply<api::CommandReport> reply) override {
+    note("recompute " + std::to_string(scan) + " [" + request.calibration + "] " + who);
+    reply(api::CommandReport{.scan = scan});
+  }
+  Result<api::CalibrationList> calibrations() override { return api::CalibrationList{.calibrations = {zeros()}}; }
+  Result<api::CalibrationReport> calibration(std::int64_t version) override {
+    if (version == zeros().version) return zeros();
+    return failure({.code = ErrorCode::NotFound,
+                    .tried = "read calibration " + std::to_string(version),
+                    .seen = "there is no such version"});
+  }
+  Result<api::ChartReport> calibration_chart(const std::string& standard) override {
+    return api::ChartReport{.standard = standard, .quantity = "mean REFF", .verdict = "in control"};
+  }
+  static api::CalibrationReport zeros() {
+    return {.version = 2,
+            .job = "arm-zeros",
+            .scan = 3,
+            .sample = "mirror M1",
+            .counts = true,
+            .values = {{.name = "zero_theta_i_deg", .unit = "deg", .value = 0.0123, .u = 0.0021}},
+            .covariance = {4.41e-6}};
+  }
+
   Result<api::StatusReport> status() override {
     api::StatusReport report{.version = "0.1.0", .instrument = "bench A", .doing = "idle"};
     report.stage = stage_report();

@@ -94,7 +94,7 @@ TEST_F(ServerTest, AChangingRouteWithoutDeclaredJsonIsRefusedAndNothingHappens) 
   for (const api::Route& route : api::kRoutes) {
     if (route.method != api::Method::Post) continue;
     std::string path(route.path);
-    if (const auto at = path.find("{scan}"); at != std::string::npos) path.replace(at, 6, "3");
+    if (const auto at = path.find('{'); at != std::string::npos) path.replace(at, path.find('}') + 1 - at, "3");
 
     const HttpAnswer form = post(path, "{}", {{"Content-Type", "text/plain"}});
 
@@ -109,7 +109,7 @@ TEST_F(ServerTest, AForeignHostIsRefusedOnEveryRoute) {
   start();
   for (const api::Route& route : api::kRoutes) {
     std::string path(route.path);
-    if (const auto at = path.find("{scan}"); at != std::string::npos) path.replace(at, 6, "3");
+    if (const auto at = path.find('{'); at != std::string::npos) path.replace(at, path.find('}') + 1 - at, "3");
 
     const HttpAnswer answer = http_request(port(), std::string(api::method_name(route.method)), path,
                                            route.method == api::Method::Post ? "{}" : "",

@@ -214,6 +214,41 @@ TEST(StatedExposures, TheTimeOfAReadingBoundsTheRepeats) {
   EXPECT_EQ(light.verdict, Measurement::Verdict::Done);
 }
 
+const std::vector<Duration> kUpAndDown{milliseconds(1),  milliseconds(8), milliseconds(32),
+                                       milliseconds(32), milliseconds(8), milliseconds(1)};
+
+std::vector<Duration> used_exposures(const Measurement& item) {
+  std::vector<Duration> exposures;
+  for (std::size_t k = 0; k < item.readings().size(); ++k) {
+    if (item.readings()[k].used) exposures.push_back(milliseconds(1) * (1U << item.rung_of(k)));
+  }
+  return exposures;
+}
+
+TEST(StatedExposures, ThatComeDownAgainAreGoneThroughOnceWhateverTheSignalToNoise) {
+  ExposureChooser chooser = stated_chooser(bracketed(kUpAndDown, 1e6));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  Light light{10'000.0};
+
+  light.shine_on(item, chooser);
+
+  EXPECT_EQ(light.verdict, Measurement::Verdict::Done);
+  EXPECT_EQ(used_exposures(item), kUpAndDown);
+}
+
+TEST(StatedExposures, ThatComeDownAgainTurnBelowWhatSaturates) {
+  ExposureChooser chooser = stated_chooser(bracketed(kUpAndDown, 300));
+  Measurement item = Measurement::of_item(chooser, Target::Sample, 1);
+  Light light{400'000.0};  // 8 ms: 3300 DN; 32 ms: beyond full scale
+
+  light.shine_on(item, chooser);
+
+  EXPECT_EQ(light.verdict, Measurement::Verdict::Done);
+  EXPECT_EQ(used_exposures(item),
+            (std::vector<Duration>{milliseconds(1), milliseconds(8), milliseconds(8), milliseconds(1)}));
+  EXPECT_EQ(light.exposures, 5) << "one saw that 32 ms are too long";
+}
+
 TEST(StatedExposures, OfOneThatSaturatesTheItemSaysSo) {
   ExposureChooser chooser = stated_chooser(bracketed({milliseconds(32)}, 300));
   Measurement item = Measurement::of_item(chooser, Target::Sample, 1);

@@ -116,6 +116,11 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<DetectorReading>(document, "DetectorReading");
   expect_schema<PauseRequest>(document, "PauseRequest");
   expect_schema<AbortRequest>(document, "AbortRequest");
+  expect_schema<CalibrationReport>(document, "CalibrationReport");
+  expect_schema<CalibrationList>(document, "CalibrationList");
+  expect_schema<ChartReport>(document, "ChartReport");
+  expect_schema<UseCalibrationRequest>(document, "UseCalibrationRequest");
+  expect_schema<RecomputeRequest>(document, "RecomputeRequest");
   expect_schema<NoWords>(document, "NoWords");
 }
 

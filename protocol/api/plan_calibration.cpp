@@ -1,0 +1,108 @@
+#include "protocol/api/plan_calibration.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "protocol/api/plan.h"
+#include "protocol/api/toml_values.h"
+
+namespace gonio::api {
+
+namespace {
+
+constexpr std::string_view kSection = "calibration";
+
+// From -half to half, symmetrical, at most `step` apart.
+std::vector<double> offsets(double half, double step) {
+  const int each_side = std::max(1, static_cast<int>(std::lround(half / step)));
+  std::vector<double> values;
+  for (int k = -each_side; k <= each_side; ++k) values.push_back(half * k / each_side);
+  return values;
+}
+
+std::vector<Angle> angles(double middle_deg, const std::vector<double>& offsets_deg, double stretch = 1.0) {
+  std::vector<Angle> all;
+  for (const double offset : offsets_deg) all.push_back(degrees(without_creep(middle_deg + stretch * offset)));
+  return all;
+}
+
+PlanPart crossing(const TomlReader& table, Wavelength wavelength, double theta_i_deg, std::vector<Angle> theta_r,
+                  std::vector<Angle> phi_r) {
+  PlanPart part{.where = table.location("theta_i_deg"),
+                .theta_i = {degrees(theta_i_deg)},
+                .phi_i = {Angle{}},
+                .wavelengths = {wavelength},
+                .shape = ProductShape{std::move(theta_r), std::move(phi_r)}};
+  part.where.field = kSection;
+  return part;
+}
+
+// Crossings of the mirror's lobe along theta_r and phi_r at each theta_i, and across the normal.
+void read_arm_zeros(TomlReader& table, Plan& plan, PlanCalibration& wanted) {
+  constexpr NumberRange kTheta{.least = 5.0, .most = 80.0, .unit = "deg"};
+  constexpr NumberRange kWidth{.least = 0.02, .most = 5.0, .unit = "deg"};
+  constexpr NumberRange kWavelength{.least = 100.0, .most = 20'000.0, .unit = "nm"};
+  const Wavelength wavelength = nanometres(table.number("wavelength_nm", kWavelength));
+  const std::vector<double> thetas = read_values(table, "theta_i_deg", kTheta);
+  const double half = table.number_or("half_width_deg", 0.6, kWidth);
+  const double step = table.number_or("step_deg", 0.15, kWidth);
+  wanted.u_mirror = degrees(table.number("u_mirror_deg", {.least = 0.0, .most = 5.0, .unit = "deg"}));
+  constexpr std::size_t kLeast = 3;
+  if (thetas.size() < kLeast) {
+    table.fail("theta_i_deg", ErrorCode::InvalidInput, fmt::format("{} angles", thetas.size()), "three at least");
+  }
+  if (step > half / 2.0) {
+    table.fail("step_deg", ErrorCode::InvalidInput, fmt::format("{} deg", step),
+               fmt::format("at most half of half_width_deg = {} deg", half));
+  }
+  if (table.has_failed()) return;
+  const std::vector<double> across = offsets(half, step);
+  for (const double theta : thetas) {
+    const double stretch = 1.0 / std::sin(in_radians(degrees(theta)));
+    plan.parts.push_back(crossing(table, wavelength, theta, angles(theta, across), {degrees(180.0)}));
+    plan.parts.push_back(crossing(table, wavelength, theta, {degrees(theta)}, angles(180.0, across, stretch)));
+  }
+  // One side of the lobe only on each azimuth: twice as fine.
+  const std::vector<double> fine = offsets(half, 0.5 * step);
+  const std::vector<double> outward(fine.begin() + std::ssize(fine) / 2 + 1, fine.end());
+  plan.parts.push_back(crossing(table, wavelength, 0.0, angles(0.0, outward),
+                                {degrees(0.0), degrees(90.0), degrees(180.0), degrees(270.0)}));
+  plan.isotropic = false;  // at the normal each azimuth is a crossing of its own
+}
+
+}  // namespace
+
+bool read_calibration(TomlReader& root, Plan& plan) {
+  std::optional<TomlReader> table = root.optional_table(kSection);
+  if (!table) return false;
+  PlanCalibration wanted{.job = static_cast<CalibrationJob>(table->choice("job", kCalibrationJobNames))};
+  if (table->has_failed()) return false;
+  if (wanted.job == CalibrationJob::Linearity) wanted.order = static_cast<int>(table->integer_or("order", 2, 1, 3));
+  if (wanted.job == CalibrationJob::ArmZeros) read_arm_zeros(*table, plan, wanted);
+  plan.calibration = wanted;
+  return wanted.job == CalibrationJob::ArmZeros;
+}
+
+void make_ladder(TomlReader& root, Plan& plan) {
+  if (!plan.calibration || plan.calibration->job != CalibrationJob::Linearity || root.has_failed()) return;
+  TomlReader reading = root.table("reading");
+  const std::size_t needed = static_cast<std::size_t>(plan.calibration->order) + 3;
+  if (plan.exposures.size() < needed) {
+    reading.fail("exposure_s", plan.exposures.empty() ? ErrorCode::MissingKey : ErrorCode::InvalidInput,
+                 fmt::format("{} exposures", plan.exposures.size()),
+                 fmt::format("{} at least, for a polynomial of order {} and an exposure offset", needed,
+                             plan.calibration->order));
+    return;
+  }
+  Duration sum{};
+  for (const Duration exposure : plan.exposures) sum += 2 * exposure;
+  if (sum > plan.max_time) {
+    reading.fail("exposure_s", ErrorCode::InvalidInput, fmt::format("{} s up and down the ladder", in_seconds(sum)),
+                 fmt::format("at most max_time_s = {} s", in_seconds(plan.max_time)));
+    return;
+  }
+  plan.exposures.insert(plan.exposures.end(), plan.exposures.rbegin(), plan.exposures.rend());
+}
+
+}  // namespace gonio::api

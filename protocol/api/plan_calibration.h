@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "base/toml_reader.h"
+#include "base/units.h"
+
+namespace gonio::api {
+
+struct Plan;
+
+/// What a scan is measured for, beside its BRDF.
+enum class CalibrationJob : std::uint8_t { Linearity, ArmZeros, CheckStandard };
+inline constexpr std::array<std::string_view, 3> kCalibrationJobNames{"linearity", "arm-zeros", "check-standard"};
+[[nodiscard]] constexpr std::string_view calibration_job_name(CalibrationJob job) {
+  return kCalibrationJobNames[static_cast<std::size_t>(job)];
+}
+
+/// [calibration] of a plan.
+struct PlanCalibration {
+  CalibrationJob job = CalibrationJob::CheckStandard;
+  int order = 2;   ///< linearity: of the polynomial
+  Angle u_mirror;  ///< arm-zeros: of the mirror's normal against a sample's, k = 1
+};
+
+/// Reads the section, where there is one, into `plan.calibration`; of arm-zeros also the points, which are its own.
+/// True when it gave the points: the plan then has no [geometry]. Errors are recorded in the reader.
+[[nodiscard]] bool read_calibration(TomlReader& root, Plan& plan);
+
+/// A linearity's exposures, ascending until here, climb and come down again. Errors are recorded in the reader.
+void make_ladder(TomlReader& root, Plan& plan);
+
+}  // namespace gonio::api

@@ -1,0 +1,118 @@
+#include "protocol/api/plan_calibration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "protocol/api/plan.h"
+
+namespace gonio::api {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+constexpr std::string_view kLadder = R"([scan]
+name = "ladder"
+sample = "tile"
+[calibration]
+job = "linearity"
+order = 1
+[geometry]
+theta_i_deg = [0]
+theta_r_deg = [30]
+phi_r_deg = [90]
+wavelength_nm = [568]
+repeats = 5
+[reading]
+max_time_s = 1
+exposure_s = [0.001, 0.004, 0.002, 0.008]
+[reference]
+standard = "SRT"
+)";
+
+constexpr std::string_view kMirror = R"([scan]
+name = "zeros"
+sample = "mirror M1"
+[calibration]
+job = "arm-zeros"
+wavelength_nm = 568
+theta_i_deg = [20, 40, 60]
+half_width_deg = 0.4
+step_deg = 0.1
+u_mirror_deg = 0.01
+[reference]
+standard = "SRT"
+)";
+
+std::string changed(std::string_view plan, std::string_view from, std::string_view to) {
+  std::string text(plan);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+Error error_of(const std::string& text) {
+  const Result<Plan> plan = parse_plan(text, "job.toml");
+  EXPECT_FALSE(plan) << text;
+  return plan ? Error{} : plan.error();
+}
+
+TEST(PlanCalibration, AnOrdinaryPlanNamesNoJob) {
+  const auto plan = parse_plan(changed(kLadder, "[calibration]\njob = \"linearity\"\norder = 1\n", ""), "plan.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_FALSE(plan->calibration);
+  EXPECT_EQ(plan->exposures.size(), 4U);
+}
+
+TEST(PlanCalibration, ALaddersExposuresClimbAndComeDownAgain) {
+  const auto plan = parse_plan(kLadder, "job.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_EQ(plan->calibration->job, CalibrationJob::Linearity);
+  EXPECT_EQ(plan->calibration->order, 1);
+  EXPECT_EQ(plan->exposures,
+            (std::vector<Duration>{milliseconds(1), milliseconds(2), milliseconds(4), milliseconds(8), milliseconds(8),
+                                   milliseconds(4), milliseconds(2), milliseconds(1)}));
+}
+
+TEST(PlanCalibration, ALadderNeedsEnoughStepsAndTheTimeForTwiceOfThem) {
+  EXPECT_THAT(describe(error_of(changed(kLadder, "order = 1", "order = 2"))), HasSubstr("5 at least"));
+  EXPECT_EQ(error_of(changed(kLadder, "exposure_s = [0.001, 0.004, 0.002, 0.008]\n", "")).code, ErrorCode::MissingKey);
+  EXPECT_THAT(describe(error_of(changed(kLadder, "max_time_s = 1", "max_time_s = 0.02"))),
+              HasSubstr("up and down the ladder"));
+}
+
+TEST(PlanCalibration, ArmZerosMakesItsOwnCrossings) {
+  const auto plan = parse_plan(kMirror, "job.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_FALSE(plan->isotropic);
+  ASSERT_EQ(plan->parts.size(), 7U) << "two at each theta_i, and across the normal";
+  const auto& along_theta = std::get<ProductShape>(plan->parts[2].shape);
+  EXPECT_EQ(along_theta.theta_r.size(), 9U);
+  EXPECT_NEAR(in_degrees(along_theta.theta_r.front()), 39.6, 1e-9);
+  EXPECT_NEAR(in_degrees(along_theta.phi_r.front()), 180.0, 1e-9);
+  const auto& along_phi = std::get<ProductShape>(plan->parts[3].shape);
+  EXPECT_NEAR(in_degrees(along_phi.phi_r.back()), 180.0 + 0.4 / std::sin(in_radians(degrees(40.0))), 1e-8);
+  const auto& across = std::get<ProductShape>(plan->parts[6].shape);
+  EXPECT_EQ(across.theta_r.size(), 8U) << "outwards from the normal, twice as fine";
+  EXPECT_EQ(across.phi_r.size(), 4U);
+  EXPECT_EQ(in_degrees(plan->parts[6].theta_i.front()), 0.0);
+}
+
+TEST(PlanCalibration, ArmZerosTakesNoGeometryOfItsAuthorsAndThreeAnglesAtLeast) {
+  EXPECT_EQ(error_of(changed(kMirror, "[reference]", "[geometry]\ntheta_i_deg = [0]\n[reference]")).code,
+            ErrorCode::UnknownKey);
+  EXPECT_THAT(describe(error_of(changed(kMirror, "[20, 40, 60]", "[20, 40]"))), HasSubstr("three at least"));
+  EXPECT_EQ(error_of(changed(kMirror, "u_mirror_deg = 0.01\n", "")).code, ErrorCode::MissingKey)
+      << "nobody knows it but the operator";
+}
+
+TEST(PlanCalibration, NamesTheJobsThatThereAre) {
+  EXPECT_THAT(describe(error_of(changed(kLadder, "\"linearity\"", "\"linearty\""))), HasSubstr("check-standard"));
+}
+
+}  // namespace
+}  // namespace gonio::api
