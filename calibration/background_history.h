@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "calibration/dark_history.h"
 
 namespace gonio::calibration {
 
-/// What one visit found of light that does not come from the target.
-struct BackgroundVisit {
-  std::int64_t visit_id = 0;
-  Instant at{};
-  double level = 0.0;
-  double u = 0.0;  ///< of the level: noise, its own darks
-};
+struct BackgroundVisit;
 
 /// The background at a moment, and what it rests on.
 struct BackgroundLevel {
@@ -23,6 +18,18 @@ struct BackgroundLevel {
   const BackgroundVisit* before = nullptr;  ///< one of the two may be missing: then it is the other's, unchanged
   const BackgroundVisit* after = nullptr;
   double weight_after = 0.0;  ///< of `after`; 1 - weight_after of `before`
+};
+
+/// What one visit found of light that does not come from the target, and what that rests on: a reading and its
+/// background may rest on the same dark, which then cancels.
+struct BackgroundVisit {
+  std::int64_t visit_id = 0;
+  Instant at{};
+  double level = 0.0;
+  double u = 0.0;                ///< of the level: its own noise
+  std::vector<DarkShare> darks;  ///< d level / d dark
+  double dq_dambient = 0.0;      ///< of a visit of the trap
+  std::optional<BackgroundLevel> ambient;
 };
 
 /// Visits of one kind of background: the ambient light (source shutter closed; DN/s at 0 dB, or W) or the lamp's stray

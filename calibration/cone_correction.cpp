@@ -97,8 +97,7 @@ ConeCorrection cone_correction(const PairedPoint& point, const DirectionSlopes& 
   const double r_ref = per_shape * operator_of(bends, 1, point.reference.geometry.theta_r).value;
   c.sample_bias = source * i.value + detector * r.value;
   c.bias = c.sample_bias - source * i_ref - detector * r_ref;
-  // Both directions may lean on one and the same guess of what is not resolved.
-  const double unresolved = source * i.unresolved + detector * r.unresolved;
+  const double unresolved = hypot_of(source * i.unresolved, detector * r.unresolved);
   const double size = std::max(std::abs(point.value), 1e-300);
   const double next_order = std::min(c.sample_bias * c.sample_bias / size, std::abs(c.sample_bias));
   c.u_unresolved = hypot_of(unresolved, next_order);

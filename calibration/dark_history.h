@@ -41,6 +41,14 @@ struct DarkLevel {
   [[nodiscard]] bool is_extrapolated() const { return before == nullptr || after == nullptr; }
 };
 
+/// What one dark level did to a reading: dq/dD [1/s per unit of the monitor] times the weight of each bracketing visit.
+struct DarkShare {
+  ExposureRung rung;
+  DarkLevel level;
+  double dq_dlevel = 0.0;    ///< of the interpolated level
+  double light_share = 0.0;  ///< of the reading's light: what its gain or range acts on
+};
+
 /// All dark visits of a scan, by rung. Immutable; threads: any.
 class DarkHistory {
  public:

@@ -124,15 +124,19 @@ struct Derivative {
   bool is_known = false;
 };
 
-// Of the orders from `lowest` on, the one whose noise and missed part are least.
+// Of the orders from `lowest` on, the one whose noise and missed part are least. An order below `first` is no estimate
+// of the derivative: beside a lowest one, which has none but higher ones to be held against, and half of it where it is
+// the only one.
 template <class Value, class Noise2>
-Derivative best_of(std::size_t size, std::size_t lowest, Value value, Noise2 noise2) {
+Derivative best_of(std::size_t size, std::size_t lowest, std::size_t first, Value value, Noise2 noise2) {
   Derivative best;
   double least = INFINITY;
   for (std::size_t p = lowest; p < size; ++p) {
-    double missed = std::abs(value(p) - value(p - 1));
+    double missed = p > first ? std::abs(value(p) - value(p - 1)) : p + 1 == size ? 0.5 * std::abs(value(p)) : 0.0;
     // Two orders may agree by accident, three hardly.
-    if (p + 1 < size) missed = std::max(missed, std::abs(value(p + 1) - value(p)));
+    for (std::size_t next = p + 1; next < std::min(size, p > first ? p + 2 : p + 3); ++next) {
+      missed = std::max(missed, std::abs(value(next) - value(p)));
+    }
     const double all = noise2(p) + missed * missed;
     if (all >= least) continue;
     least = all;
@@ -157,9 +161,9 @@ void read_stop(const std::vector<Ordinate>& ordinates, std::span<const LineStop>
   const double bend = has_logarithm ? 1.0 : 0.0;  // f'' / f = g'' + g'^2
   const auto e = estimates(nodes, y, u);
   const Derivative first = best_of(
-      nodes.size, 1, [&](std::size_t p) { return e[p].first; }, [&](std::size_t p) { return e[p].first_noise2; });
+      nodes.size, 1, 0, [&](std::size_t p) { return e[p].first; }, [&](std::size_t p) { return e[p].first_noise2; });
   const Derivative second = best_of(
-      nodes.size, 2, [&](std::size_t p) { return e[p].second + bend * e[p].first * e[p].first; },
+      nodes.size, 2, 2, [&](std::size_t p) { return e[p].second + bend * e[p].first * e[p].first; },
       [&](std::size_t p) { return e[p].second_noise2; });
   slopes.slope[a] = static_cast<double>(line[own].sign) * unit * first.value;
   slopes.unresolved[a] = unit * first.missed;
@@ -221,10 +225,12 @@ void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
     const double f = std::abs(point.value.si());
     s.unresolved_curvature[kI] = s.unresolved_curvature[kR] =
         std::max({f, std::abs(s.slope[kI]), std::abs(s.slope[kR])});
-  } else if (!known[0]) {
-    s.unresolved_curvature[kI] = size(kR);
-  } else if (!known[1]) {
-    s.unresolved_curvature[kR] = size(kI);
+  } else if (!known[0] || !known[1]) {
+    const std::size_t unknown = known[0] ? kR : kI;
+    const std::size_t other = known[0] ? kI : kR;
+    s.curvature[unknown] = s.curvature[other];
+    s.curvature_noise[unknown] = s.curvature_noise[other];
+    s.unresolved_curvature[unknown] = std::hypot(s.unresolved_curvature[other], 0.5 * s.curvature[other]);
   }
   const double sine = std::abs(std::sin(point.reported.theta_r.si()));
   if (plan_key(point.planned.theta_r) == 0 || plan_key(point.planned.theta_i) == 0) {

@@ -99,13 +99,14 @@ void add_gains(const PairedPoint& p, const DetectorModel& detector, TermList& te
 
 class DarkTerms {
  public:
-  DarkTerms(const DetectorModel& detector, TermList& terms, bool is_divisor)
-      : detector_(detector), terms_(terms), is_divisor_(is_divisor) {}
+  /// `divisor`: the q that the reading divides by; 0 for any other.
+  DarkTerms(const DetectorModel& detector, TermList& terms, double divisor)
+      : detector_(detector), terms_(terms), per_divisor_(divisor == 0.0 ? 0.0 : 1.0 / divisor) {}
 
-  void add(const NormalisedReading& reading, double dvalue_dq) {
-    for (const DarkShare& share : reading.darks) {
+  void add(const std::vector<DarkShare>& shares, double dvalue_dq) {
+    for (const DarkShare& share : shares) {
       const double per_dn = dvalue_dq * share.dq_dlevel;
-      const double relative = share.dq_dlevel / reading.q;
+      const double relative = share.dq_dlevel * per_divisor_;
       const double after = share.level.weight_after;
       add_visit(share, share.level.before, per_dn * (1.0 - after), relative * (1.0 - after));
       add_visit(share, share.level.after, per_dn * after, relative * after);
@@ -146,25 +147,51 @@ class DarkTerms {
   }
 
   void divide(double relative, double u) {
-    if (is_divisor_ && u != 0.0) terms_.last_shared_divides(relative);
+    if (relative != 0.0 && u != 0.0) terms_.last_shared_divides(relative);
   }
 
   const DetectorModel& detector_;
   TermList& terms_;
-  bool is_divisor_;
+  double per_divisor_;
 };
 
-void add_background(Source source, std::string_view name, const std::optional<BackgroundLevel>& level, double per_unit,
-                    TermList& terms) {
-  if (!level) return;
-  const auto add = [&](const BackgroundVisit* visit, double weight) {
-    if (visit == nullptr) return;
-    terms.shared({source, visit->visit_id}, visit->u, "DN/s or W, of q", per_unit * weight * visit->u,
-                 [&] { return fmt::format("{} visit {}", name, visit->visit_id); });
-  };
-  add(level->before, 1.0 - level->weight_after);
-  add(level->after, level->weight_after);
-}
+/// The background of both readings. A visit's own darks and ambient light are terms of the point as well: where they
+/// are the reading's too, they add with their signs.
+class BackgroundTerms {
+ public:
+  BackgroundTerms(const DetectorModel& detector, TermList& terms) : detector_(detector), terms_(terms) {}
+
+  void add(const NormalisedReading& reading, double dvalue_dq) {
+    if (reading.ambient) add_ambient(*reading.ambient, dvalue_dq * reading.dq_dambient);
+    if (!reading.stray) return;
+    for_visits(*reading.stray, [&](const BackgroundVisit& visit, double weight) {
+      const double per_unit = -dvalue_dq * weight;
+      terms_.shared({Source::StrayVisit, visit.visit_id}, visit.u, "of q", per_unit * visit.u,
+                    [&] { return fmt::format("trap visit {}", visit.visit_id); });
+      DarkTerms(detector_, terms_, 0.0).add(visit.darks, per_unit);
+      if (visit.ambient) add_ambient(*visit.ambient, per_unit * visit.dq_dambient);
+    });
+  }
+
+ private:
+  template <class Work>
+  static void for_visits(const BackgroundLevel& level, const Work& work) {
+    if (level.before != nullptr) work(*level.before, 1.0 - level.weight_after);
+    if (level.after != nullptr) work(*level.after, level.weight_after);
+  }
+
+  void add_ambient(const BackgroundLevel& level, double per_level) {
+    for_visits(level, [&](const BackgroundVisit& visit, double weight) {
+      const double per_unit = per_level * weight;
+      terms_.shared({Source::AmbientVisit, visit.visit_id}, visit.u, detector_.power ? "W" : "DN/s", per_unit * visit.u,
+                    [&] { return fmt::format("ambient visit {}", visit.visit_id); });
+      DarkTerms(detector_, terms_, 0.0).add(visit.darks, per_unit);
+    });
+  }
+
+  const DetectorModel& detector_;
+  TermList& terms_;
+};
 
 }  // namespace
 
@@ -173,12 +200,10 @@ void add_history_terms(const PairedPoint& p, const InstrumentModel& instrument, 
   const double by_reference = -p.value / p.reference.q;
   DriftTerms(p, terms).add();
   add_gains(p, detector, terms);
-  DarkTerms(detector, terms, false).add(p.sample, p.dvalue_dq);
-  DarkTerms(detector, terms, true).add(p.reference, by_reference);
-  add_background(Source::AmbientVisit, "ambient", p.sample.ambient, p.dvalue_dq * p.sample.dq_dambient, terms);
-  add_background(Source::AmbientVisit, "ambient", p.reference.ambient, by_reference * p.reference.dq_dambient, terms);
-  add_background(Source::StrayVisit, "trap", p.sample.stray, -p.dvalue_dq, terms);
-  add_background(Source::StrayVisit, "trap", p.reference.stray, -by_reference, terms);
+  DarkTerms(detector, terms, 0.0).add(p.sample.darks, p.dvalue_dq);
+  DarkTerms(detector, terms, p.reference.q).add(p.reference.darks, by_reference);
+  BackgroundTerms(detector, terms).add(p.sample, p.dvalue_dq);
+  BackgroundTerms(detector, terms).add(p.reference, by_reference);
 }
 
 }  // namespace gonio::calibration

@@ -95,8 +95,8 @@ struct ConeModel {
 struct PolarisationModel {
   double source_degree = 0.0;           ///< linear, of the lamp's light
   double detector_diattenuation = 0.0;  ///< (most - least) / (most + least) of its answers to linear light
-  /// Standard uncertainty of the sample's unknown diattenuation (R_s - R_p) / (R_s + R_p), as seen along the planes of
-  /// source and detector; the standard's likewise.
+  /// Standard uncertainty of the sample's unknown diattenuation (R_s - R_p) / (R_s + R_p) times the cosine of twice the
+  /// angle from its plane to the source's or the detector's, which nobody knows; the standard's likewise.
   double u_sample = 0.0;
   double u_reference = 0.0;
   /// A sample of clear facets: its diattenuation is Fresnel's at half the phase angle, times u_sample.

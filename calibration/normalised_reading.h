@@ -16,14 +16,6 @@
 
 namespace gonio::calibration {
 
-/// What one dark level did to a reading: dq/dD [1/s per unit of the monitor] times the weight of each bracketing visit.
-struct DarkShare {
-  ExposureRung rung;
-  DarkLevel level;
-  double dq_dlevel = 0.0;    ///< of the interpolated level
-  double light_share = 0.0;  ///< of the reading's light: what its gain or range acts on
-};
-
 /// What a reading is cleared with. What it points to must outlive it.
 struct ReadingContext {
   const DarkHistory* darks = nullptr;          ///< never null

@@ -1,7 +1,11 @@
 #include "calibration/polarisation_term.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace gonio::calibration {
 
@@ -22,16 +26,19 @@ void add_polarisation_terms(const PairedPoint& point, const InstrumentModel& ins
   const double sign = point.polarisation == Polarisation::P ? -1.0 : 1.0;
   const double source = point.polarisation == Polarisation::Any ? model.source_degree : 1.0;
   const double detector = model.detector_diattenuation;
-  const auto relative = [&](double diattenuation) {
-    return sign * source * (diattenuation + detector) + detector * diattenuation;
-  };
   const double facets = model.sample_index ? facet_diattenuation(point.sample.geometry, *model.sample_index) : 1.0;
   const std::string owner = instrument.version.empty() ? "" : "instrument " + instrument.version;
-  terms.shared({ComponentSource::Polarisation, 0}, model.u_sample, "of its diattenuation",
-               point.value * relative(facets) * model.u_sample, [] { return "polarisation of the sample"; });
-  terms.shared({ComponentSource::Polarisation, 1}, model.u_reference, "of its diattenuation",
-               -point.value * relative(1.0) * model.u_reference, [] { return "polarisation of the reference"; },
-               {.owner = owner});
+  const auto add = [&](std::int64_t part, double u, double per_sd, std::string_view what, std::string_view of) {
+    terms.shared({ComponentSource::Polarisation, part}, u, "of its diattenuation", per_sd * u,
+                 [&] { return fmt::format("polarisation of {}, by the {}", what, of); }, {.owner = owner});
+  };
+  const double f = point.value;
+  add(0, model.u_sample, f * sign * source * facets, "the sample", "source");
+  add(1, model.u_sample, f * detector * facets, "the sample", "detector");
+  add(2, model.u_sample, f * sign * source * detector, "the sample", "both");
+  add(3, model.u_reference, -f * sign * source, "the reference", "source");
+  add(4, model.u_reference, -f * detector, "the reference", "detector");
+  add(5, model.u_reference, -f * sign * source * detector, "the reference", "both");
 }
 
 }  // namespace gonio::calibration

@@ -10,14 +10,13 @@ namespace gonio::calibration {
 /// 1999, 1.5.3): what a surface of facets polarises by.
 [[nodiscard]] double facet_diattenuation(const Geometry& g, double refractive_index);
 
-/// The residual of one state of light. With the lamp's degree P, the detector's diattenuation D and a surface of
-/// diattenuation C along their planes, that keeps the part R <= 1 of what is polarised, the reading is (Mueller
-/// calculus, both planes along s or p: the worst case)
-///   f (1 + P C + D C + P D R);
-/// C is unknown with the standard uncertainty u_sample (times a facet's where one is stated), R no larger than C's
-/// bound, so that u = f ((P + D) C + P D) u_sample, and the reference's likewise with u_reference and C = 1. A point
-/// measured in s or p light has P = 1, with opposite signs: the mean of both is free of it, and of D C no more than
-/// before. One shared component for the sample and one for the reference.
+/// The residual of one state of light. With the lamp's degree P, the detector's diattenuation D, their planes at psi_P
+/// and psi_D from the s direction, and a surface of diattenuation C that keeps the part R <= 1 of what is polarised,
+/// the reading is (Mueller calculus; Chipman, Lam and Young 2018, ch. 6)
+///   f (1 + P C cos 2 psi_P + D C cos 2 psi_D + P D R cos 2 (psi_P -+ psi_D)).
+/// The three cosines are three independent errors where nobody knows the planes; u_sample is the standard uncertainty
+/// of C cos 2 psi (times a facet's C where an index is stated), u_reference the standard's. A point measured in s or p
+/// light has P = 1, with opposite signs: the mean of both is free of the source's part and of the product. Shared.
 void add_polarisation_terms(const PairedPoint& point, const InstrumentModel& instrument, TermList& terms);
 
 }  // namespace gonio::calibration

@@ -5,29 +5,6 @@
 namespace gonio::calibration {
 namespace {
 
-double square_of(double x) {
-  return x * x;
-}
-
-// Of q: the noise of the reading, of its monitor and of the dark and ambient visits that it rests on. Those visits are
-// shared with other readings; what that correlation is worth is below the noise of a frame.
-double u_of_background(const NormalisedReading& reading) {
-  double variance = square_of(reading.u_noise) + square_of(reading.u_monitor);
-  for (const DarkShare& share : reading.darks) {
-    const DarkLevel& dark = share.level;
-    if (dark.before != nullptr) {
-      variance += square_of(share.dq_dlevel * (1.0 - dark.weight_after) * dark.before->u_dn);
-    }
-    if (dark.after != nullptr) variance += square_of(share.dq_dlevel * dark.weight_after * dark.after->u_dn);
-  }
-  if (reading.ambient) {
-    const BackgroundLevel& a = *reading.ambient;
-    if (a.before != nullptr) variance += square_of(reading.dq_dambient * (1.0 - a.weight_after) * a.before->u);
-    if (a.after != nullptr) variance += square_of(reading.dq_dambient * a.weight_after * a.after->u);
-  }
-  return std::sqrt(variance);
-}
-
 // Visits of one target; those that cannot be normalised say nothing. The ambient light does not come through the
 // lamp's monitor: its level is q by a lamp of 1.
 BackgroundHistory history_of(const ScanReadings& scan, Target target, const ReadingContext& context) {
@@ -42,9 +19,13 @@ BackgroundHistory history_of(const ScanReadings& scan, Target target, const Read
     }
     const auto normalised = normalise(visit, context);
     if (!normalised) continue;
-    history.add(
-        reading.light_class,
-        {.visit_id = reading.visit_id, .at = reading.at, .level = normalised->q, .u = u_of_background(*normalised)});
+    history.add(reading.light_class, {.visit_id = reading.visit_id,
+                                      .at = reading.at,
+                                      .level = normalised->q,
+                                      .u = std::hypot(normalised->u_noise, normalised->u_monitor),
+                                      .darks = normalised->darks,
+                                      .dq_dambient = normalised->dq_dambient,
+                                      .ambient = normalised->ambient});
   }
   history.sort();
   return history;
