@@ -52,8 +52,8 @@ Exposure ReadingLevel::expose(const ReadingRequest& request) const {
 
   const double length_s = scene_.scene_seconds(request.exposure);
   const double to_s = request.at_scene_s + length_s;
-  Exposure exposure = charge_.collect(light_path_.rate(pose) * length_s, lamp_.mean(request.at_scene_s, to_s),
-                                      request.at_scene_s, length_s);
+  const double lamp = request.is_dark ? 1.0 : lamp_.mean(request.at_scene_s, to_s);  // behind the shutter none counts
+  Exposure exposure = charge_.collect(light_path_.rate(pose) * length_s, lamp, request.at_scene_s, length_s);
   exposure.number = request.exposure_number;
   exposure.place = light_path_.place(pose);
   return exposure;

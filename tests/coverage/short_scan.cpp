@@ -185,9 +185,10 @@ void ShortScan::visit_all(const sim::ReadingLevel& instrument) {
 }
 
 double ShortScan::chosen_exposure_s(const sim::ReadingLevel& instrument, const sim::ReadingRequest& request) {
+  if (plan_.exposure_s > 0.0) return plan_.exposure_s;
   const sim::DetectorSpec& detector = instrument.scene().detector;
   const std::vector<double> rungs = ladder(detector);
-  const double probe_s = rungs[rungs.size() / 2];
+  const double probe_s = rungs[rungs.size() / 3];  // bright samples must not saturate it
   const RawFrame probe = expose(instrument, request, probe_s);
   if (probe.region.saturated > 0) return rungs.front();
   const double rate = std::max(0.1, probe.region.mean - detector.offset_dn) / probe_s;
@@ -228,7 +229,7 @@ void ShortScan::add_frames(const sim::ReadingLevel& instrument, const sim::Readi
 }
 
 sim::MonitorReading ShortScan::monitor(const sim::ReadingLevel& instrument, const sim::ReadingRequest& request) {
-  if (plan_.monitor_is_blind) return {.mean = 1.0, .standard_error = 0.0, .samples = 4};
+  if (plan_.monitor_is_blind || request.is_dark) return {.mean = 1.0, .standard_error = 0.0, .samples = 4};
   return instrument.monitor(request);
 }
 

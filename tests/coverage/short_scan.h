@@ -40,9 +40,10 @@ struct ScanPlan {
   std::vector<double> theta_r_deg = {0.0, 15.0, 30.0, 45.0, 60.0, 75.0};
   std::vector<double> phi_r_deg = {0.0, 60.0, 120.0, 180.0};
   Wavelength wavelength = nanometres(568.0);
-  std::size_t block = 16;  ///< sample items before their reference partners
-  int frames = 2;          ///< of one reading
-  int dark_frames = 2;     ///< of one visit and exposure
+  std::size_t block = 16;   ///< sample items before their reference partners
+  int frames = 2;           ///< of one reading
+  int dark_frames = 2;      ///< of one visit and exposure
+  double exposure_s = 0.0;  ///< stated; 0: a probe chooses it
   DetectorKind detector = DetectorKind::Statistics;
   MeterSpec meter;
   /// What interpolation between two darks misses: drawn once an interval.
