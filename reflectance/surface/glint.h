@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "reflectance/batch/vector_unit.h"
 #include "reflectance/surface/clamped_cosine.h"
+#include "reflectance/surface/facet_terms.h"
 #include "reflectance/surface/fresnel.h"
 #include "reflectance/surface/model_spec.h"
 #include "reflectance/surface/surface.h"
@@ -42,17 +43,11 @@ class Glint {
   [[nodiscard]] Brdf eval(const Direction& i, const Direction& r) const {
     const double mu_i = clamped_mu(i);
     const double mu_r = clamped_mu(r);
-    const double mu_sum = mu_i + mu_r;
-    const SumTerms t = sum_terms(i, r);
-    const double tilt = std::sin(half_theta_difference(i, r));
-    // |i + r|^2 = mu_sum^2 + level2: the part along the surface as a sum of squares, so that it vanishes at specular.
-    const double level2 = 4.0 * (t.rise2 * (tilt * tilt) + t.sines * t.facing2);
-    const double tan2_beta = level2 / (mu_sum * mu_sum);
-    const double cos2_omega = std::min(1.0, 0.25 * (mu_sum * mu_sum + level2));
+    const FacetTerms t = facet_terms(i, r, mu_i, mu_r);
     const double fresnel_share =
-        fresnel(std::sqrt(cos2_omega), std::sqrt(1.0 - cos2_omega), p_.refractive_index).unpolarised();
-    const double per_cos4 = (1.0 + tan2_beta) * (1.0 + tan2_beta);
-    const double facets = peak_ * std::exp(-tan2_beta / p_.slope_variance);
+        fresnel(std::sqrt(t.cos2_omega), std::sqrt(1.0 - t.cos2_omega), p_.refractive_index).unpolarised();
+    const double per_cos4 = (1.0 + t.tan2_beta) * (1.0 + t.tan2_beta);
+    const double facets = peak_ * std::exp(-t.tan2_beta / p_.slope_variance);
     return per_steradian(fresnel_share * facets * per_cos4 / (4.0 * (mu_i * mu_r)) * visible_share(i, r));
   }
   void eval_fast(const Direction& i, const DirectionBlock& r, BrdfBlock& f, VectorUnit unit = vector_unit()) const;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "reflectance/surface/fresnel_mirror.h"
+#include "reflectance/surface/ggx.h"
 #include "reflectance/surface/glint.h"
 #include "reflectance/surface/hapke.h"
 #include "reflectance/surface/lambertian.h"
@@ -60,6 +61,16 @@ Result<Surface> make_cox_munk(Values v) {
   return make_glint<shadowing>(std::array{cox_munk_slope_variance(v[0]), v[1]});
 }
 
+constexpr ModelSpec kBeckmann{"beckmann", "facets with Gaussian slopes by their roughness, Smith shadowing", kFacetParameters};
+
+// alpha^2 is the variance of both slope components together; at the least of one the square rounds below that of the
+// other.
+Result<Surface> make_beckmann(Values v) {
+  GONIO_TRY(check_values(kBeckmann, v));
+  const double variance = std::max(1e-6, v[0] * v[0]);
+  return make_glint<Shadowing::Smith>(std::array{variance, v[1]});
+}
+
 std::span<const Row> rows() {
   static const std::array kRows{
       Row{Lambertian::kSpec, [](Values v) { return as_surface(Lambertian::make({.rho = v[0]})); }},
@@ -78,6 +89,8 @@ std::span<const Row> rows() {
       Row{kCoxMunkSmith, make_cox_munk<Shadowing::Smith>},
       Row{Glint::kSpec, make_glint<Shadowing::None>},
       Row{Glint::kSpecSmith, make_glint<Shadowing::Smith>},
+      Row{kBeckmann, make_beckmann},
+      Row{Ggx::kSpec, [](Values v) { return as_surface(Ggx::make({.roughness = v[0], .refractive_index = v[1]})); }},
   };
   return kRows;
 }

@@ -59,8 +59,7 @@ bool is_outermost(const TabulatedSurface& table, const TableRow& row) {
 
 }  // namespace
 
-CrossValidation cross_validate_views(const TabulatedSurface& table) {
-  Tally tally;
+void visit_view_errors(const TabulatedSurface& table, const ValidationVisitor& visit) {
   for (const TableRow& row : table.rows()) {
     for (std::size_t k = 0; k < row.nodes().size(); ++k) {
       const std::vector<double> told = row.without(k);
@@ -68,23 +67,37 @@ CrossValidation cross_validate_views(const TabulatedSurface& table) {
       const double f = row.nodes()[k].f;
       const double worse = *std::max_element(told.begin(), told.end(),
                                              [&](double a, double b) { return std::abs(a - f) < std::abs(b - f); });
-      tally.add(pair_of(row, row.nodes()[k], table.options()), f, worse);
+      const Pair pair = pair_of(row, row.nodes()[k], table.options());
+      visit(pair.i, pair.r, f, worse);
     }
   }
-  return tally.result();
 }
 
-CrossValidation cross_validate_incidences(const TabulatedSurface& table) {
-  Tally tally;
+void visit_incidence_errors(const TabulatedSurface& table, const ValidationVisitor& visit) {
   for (std::size_t k = 0; k < table.rows().size(); ++k) {
     const TableRow& row = table.rows()[k];
     if (is_outermost(table, row)) continue;
     const TabulatedSurface rest = table.without_incidence(k);
     for (const TableNode& node : row.nodes()) {
       const Pair pair = pair_of(row, node, table.options());
-      tally.add(pair, node.f, rest.known_one_way(pair.i, pair.r).f);
+      visit(pair.i, pair.r, node.f, rest.known_one_way(pair.i, pair.r).f);
     }
   }
+}
+
+CrossValidation cross_validate_views(const TabulatedSurface& table) {
+  Tally tally;
+  visit_view_errors(table, [&](const Direction& i, const Direction& r, double f, double told) {
+    tally.add({.i = i, .r = r}, f, told);
+  });
+  return tally.result();
+}
+
+CrossValidation cross_validate_incidences(const TabulatedSurface& table) {
+  Tally tally;
+  visit_incidence_errors(table, [&](const Direction& i, const Direction& r, double f, double told) {
+    tally.add({.i = i, .r = r}, f, told);
+  });
   return tally.result();
 }
 

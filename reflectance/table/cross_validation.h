@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "base/geometry.h"
 #include "base/units.h"
@@ -16,6 +17,14 @@ struct CrossValidation {
   Geometry worst{};       ///< where that was
   Brdf mean{};            ///< of |f| over the same readings, to compare with
 };
+
+/// Takes a pair of directions, the value there, and what the others make of it.
+using ValidationVisitor = std::function<void(const Direction& i, const Direction& r, double f, double told)>;
+
+/// All that `cross_validate_views` is made of.
+void visit_view_errors(const TabulatedSurface& table, const ValidationVisitor& visit);
+/// All that `cross_validate_incidences` is made of.
+void visit_incidence_errors(const TabulatedSurface& table, const ValidationVisitor& visit);
 
 /// Each reading against its neighbours of the same incidence, without itself; on rings the worse of along and across.
 /// Noise included, and across a gap twice as wide as where the table is used: for a smooth surface some four times the

@@ -85,7 +85,8 @@ Vector placed(const Direction& i, const Direction& r, const TableOptions& option
 std::vector<Group> by_incidence(std::span<const TableReading> readings, const TableOptions& options) {
   std::vector<Group> groups;
   std::size_t last = 0;
-  for (const TableReading& reading : readings) {
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const TableReading& reading = readings[k];
     const Direction i = incident_direction(reading.geometry);
     const Direction r = reflected_direction(reading.geometry);
     if (last >= groups.size() || !is_same_incidence(groups[last].i, i, options)) {
@@ -94,15 +95,16 @@ std::vector<Group> by_incidence(std::span<const TableReading> readings, const Ta
       last = static_cast<std::size_t>(known - groups.begin());
       if (known == groups.end()) groups.push_back({.i = i, .readings = {}});
     }
-    groups[last].readings.push_back({.r = placed(i, r, options), .reading = &reading});
+    groups[last].readings.push_back(
+        {.r = placed(i, r, options), .reading = &reading, .index = static_cast<std::uint32_t>(k)});
   }
   return groups;
 }
 
 Result<TableRow> row_of(const Group& group, const TableOptions& options, TableReport& report) {
   const double tolerance = options.same_direction.si();
-  std::vector<TableNode> nodes = merged_nodes(group.readings, tolerance, report);
-  report.directions += nodes.size();
+  MergedNodes nodes = merged_nodes(group.readings, tolerance, report);
+  report.directions += nodes.nodes.size();
   RowAzimuths azimuths = RowAzimuths::Full;
   if (options.symmetry == TableSymmetry::Isotropic) azimuths = RowAzimuths::Folded;
   if (options.symmetry != TableSymmetry::Anisotropic && group.i.theta() <= options.same_direction) {

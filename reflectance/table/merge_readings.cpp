@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
+#include <utility>
 
 namespace gonio::reflectance {
 namespace {
@@ -53,8 +55,11 @@ double u_of(const PlacedReading& p) {
   return in_per_steradian(p.reading->f.u);
 }
 
-TableNode node_of(std::span<const PlacedReading> group, TableReport& report) {
-  if (group.size() == 1) return {.r = group[0].r, .f = value_of(group[0]), .u = u_of(group[0])};
+TableNode node_of(std::span<const PlacedReading> group, TableReport& report, Origins& origins) {
+  if (group.size() == 1) {
+    origins = {{.reading = group[0].index, .weight = 1.0}};
+    return {.r = group[0].r, .f = value_of(group[0]), .u = u_of(group[0])};
+  }
   const bool has_u = std::all_of(group.begin(), group.end(), [](const PlacedReading& p) { return u_of(p) > 0.0; });
   const auto weight = [&](const PlacedReading& p) { return has_u ? 1.0 / (u_of(p) * u_of(p)) : 1.0; };
   double weights = 0.0;
@@ -63,6 +68,7 @@ TableNode node_of(std::span<const PlacedReading> group, TableReport& report) {
     weights += weight(p);
     sum += weight(p) * value_of(p);
   }
+  for (const PlacedReading& p : group) origins.push_back({.reading = p.index, .weight = weight(p) / weights});
   TableNode node{.r = group[0].r, .f = sum / weights};
   MergedReadings merged{.geometry = group[0].reading->geometry, .count = group.size()};
   if (has_u) {
@@ -87,7 +93,7 @@ double theta_of(const TableNode& n) {
 
 }  // namespace
 
-std::vector<TableNode> merged_nodes(std::span<const PlacedReading> readings, double tolerance, TableReport& report) {
+MergedNodes merged_nodes(std::span<const PlacedReading> readings, double tolerance, TableReport& report) {
   GroupFinder finder(tolerance);
   std::vector<std::vector<PlacedReading>> groups;
   for (const PlacedReading& p : readings) {
@@ -95,38 +101,48 @@ std::vector<TableNode> merged_nodes(std::span<const PlacedReading> readings, dou
     if (k == groups.size()) groups.emplace_back();
     groups[k].push_back(p);
   }
-  std::vector<TableNode> nodes;
-  nodes.reserve(groups.size());
-  for (const std::vector<PlacedReading>& group : groups) nodes.push_back(node_of(group, report));
-  return nodes;
+  MergedNodes merged;
+  merged.nodes.reserve(groups.size());
+  merged.origins.resize(groups.size());
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    merged.nodes.push_back(node_of(groups[k], report, merged.origins[k]));
+  }
+  return merged;
 }
 
-std::vector<TableNode> profile_nodes(std::span<const TableNode> nodes, double tolerance) {
-  std::vector<TableNode> sorted(nodes.begin(), nodes.end());
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const TableNode& a, const TableNode& b) { return theta_of(a) < theta_of(b); });
+MergedNodes profile_nodes(const MergedNodes& nodes, double tolerance) {
+  std::vector<std::size_t> order(nodes.nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto theta_at = [&](std::size_t place) { return theta_of(nodes.nodes[order[place]]); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return theta_of(nodes.nodes[a]) < theta_of(nodes.nodes[b]); });
   std::size_t rings = 1;
-  for (std::size_t k = 1; k < sorted.size(); ++k) rings += theta_of(sorted[k]) - theta_of(sorted[k - 1]) > tolerance;
+  for (std::size_t k = 1; k < order.size(); ++k) rings += theta_at(k) - theta_at(k - 1) > tolerance;
   constexpr std::size_t kManyAtOnce = 8;
   constexpr std::size_t kFewRings = 64;
-  const bool has_rings = rings <= kFewRings || 2 * rings <= sorted.size();
-  std::vector<TableNode> profile;
-  for (std::size_t first = 0; first < sorted.size();) {
+  const bool has_rings = rings <= kFewRings || 2 * rings <= order.size();
+  MergedNodes profile;
+  for (std::size_t first = 0; first < order.size();) {
     std::size_t last = first + 1;
-    while (last < sorted.size() && (has_rings ? theta_of(sorted[last]) - theta_of(sorted[last - 1]) <= tolerance
-                                              : last - first < kManyAtOnce)) {
+    while (last < order.size() &&
+           (has_rings ? theta_at(last) - theta_at(last - 1) <= tolerance : last - first < kManyAtOnce)) {
       ++last;
     }
     TableNode mean;
+    Origins origins;
     double theta = 0.0;
     const auto count = static_cast<double>(last - first);
     for (std::size_t k = first; k < last; ++k) {
-      mean.f += sorted[k].f / count;
-      mean.u += sorted[k].u / count;
-      theta += theta_of(sorted[k]) / count;
+      mean.f += nodes.nodes[order[k]].f / count;
+      mean.u += nodes.nodes[order[k]].u / count;
+      theta += theta_at(k) / count;
+      for (const ReadingShare& share : nodes.origins[order[k]]) {
+        origins.push_back({.reading = share.reading, .weight = share.weight / count});
+      }
     }
     mean.r = {.x = std::sin(theta), .y = 0.0, .z = std::max(0.0, std::cos(theta))};
-    profile.push_back(mean);
+    profile.nodes.push_back(mean);
+    profile.origins.push_back(std::move(origins));
     first = last;
   }
   return profile;

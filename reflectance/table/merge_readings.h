@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,15 +15,21 @@ namespace gonio::reflectance {
 struct PlacedReading {
   Vector r;
   const TableReading* reading = nullptr;
+  std::uint32_t index = 0;  ///< of the reading
+};
+
+/// Nodes, and of which readings each is made.
+struct MergedNodes {
+  std::vector<TableNode> nodes;
+  std::vector<Origins> origins;  ///< as many
 };
 
 /// Makes one node of all readings that lie within `tolerance` [rad] of the first of them, the pole's among them; adds
 /// each such group to `report`.
-[[nodiscard]] std::vector<TableNode> merged_nodes(std::span<const PlacedReading> readings, double tolerance,
-                                                  TableReport& report);
+[[nodiscard]] MergedNodes merged_nodes(std::span<const PlacedReading> readings, double tolerance, TableReport& report);
 
 /// Makes rings of one node each, whatever the azimuths: for theta_i = 0 of a surface that no turn changes. Readings on
 /// common thetas give one ring a theta, others rings of eight.
-[[nodiscard]] std::vector<TableNode> profile_nodes(std::span<const TableNode> nodes, double tolerance);
+[[nodiscard]] MergedNodes profile_nodes(const MergedNodes& nodes, double tolerance);
 
 }  // namespace gonio::reflectance

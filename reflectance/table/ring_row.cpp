@@ -49,6 +49,13 @@ RingRow::RingRow(std::vector<TableNode>& nodes, double tolerance, RowAzimuths az
   nodes.push_back(pole);
 }
 
+std::vector<std::size_t> RingRow::nodes_of_pole() const {
+  std::vector<std::size_t> nodes;
+  if (pole_width_ == 0.0) return nodes;
+  for (const RingNode& node : rings_[1].nodes) nodes.push_back(node.node);
+  return nodes;
+}
+
 RingRow::Along RingRow::along(const Ring& ring, double phi) const {
   const std::vector<RingNode>& nodes = ring.nodes;
   if (nodes.size() == 1) {

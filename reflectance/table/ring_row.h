@@ -24,6 +24,8 @@ class RingRow {
   RingRow(std::vector<TableNode>& nodes, double tolerance, RowAzimuths azimuths);
 
   [[nodiscard]] Stencil locate(const Vector& r) const;
+  /// The nodes of which the added pole is the mean; none where it was measured.
+  [[nodiscard]] std::vector<std::size_t> nodes_of_pole() const;
   /// The same without node k: along its ring, and across it from the two next ones. Nothing where there is neither.
   [[nodiscard]] std::vector<Stencil> locate_without(std::size_t k) const;
   /// Hands out the nodes of a quadrature over the hemisphere whose cells are those of the rings.

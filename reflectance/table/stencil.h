@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "reflectance/direction/direction.h"
 #include "reflectance/table/delaunay.h"
@@ -41,6 +42,14 @@ struct Stencil {
     weight[size++] = w;
   }
 };
+
+/// What part of a node's value one reading is.
+struct ReadingShare {
+  std::uint32_t reading = 0;  ///< its index, as TabulatedSurface::make was given them
+  double weight = 0.0;
+};
+/// Of one node: the weights sum to 1.
+using Origins = std::vector<ReadingShare>;
 
 /// One reading, or several of the same direction made one, in the frame of its incidence: x points along phi_i.
 struct TableNode {

@@ -7,39 +7,54 @@ namespace gonio::reflectance {
 namespace {
 
 // Of the nodes off the plane of incidence.
-void add_mirror_images(std::vector<TableNode>& nodes, double tolerance) {
-  const std::size_t measured = nodes.size();
+void add_mirror_images(MergedNodes& nodes, double tolerance) {
+  const std::size_t measured = nodes.nodes.size();
   for (std::size_t k = 0; k < measured; ++k) {
-    TableNode image = nodes[k];
+    TableNode image = nodes.nodes[k];
     if (image.r.y <= 0.5 * tolerance) continue;
     image.r.y = -image.r.y;
-    nodes.push_back(image);
+    nodes.nodes.push_back(image);
+    nodes.origins.push_back(Origins(nodes.origins[k]));
   }
+}
+
+// Of a pole that was added.
+Origins mean_of(const std::vector<std::size_t>& nodes, const std::vector<Origins>& origins) {
+  Origins mean;
+  const auto count = static_cast<double>(nodes.size());
+  for (const std::size_t k : nodes) {
+    for (const ReadingShare& share : origins[k]) {
+      mean.push_back({.reading = share.reading, .weight = share.weight / count});
+    }
+  }
+  return mean;
 }
 
 }  // namespace
 
-Result<TableRow> TableRow::make(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes, RowAzimuths azimuths,
+Result<TableRow> TableRow::make(Angle theta_i, Angle phi_i, MergedNodes nodes, RowAzimuths azimuths,
                                 const TableOptions& options) {
-  const std::size_t measured = nodes.size();
+  const std::size_t measured = nodes.nodes.size();
   const double tolerance = options.same_direction.si();
   if (options.layout == TableLayout::Rings || azimuths == RowAzimuths::None) {
-    RingRow rings(nodes, tolerance, azimuths);
+    RingRow rings(nodes.nodes, tolerance, azimuths);
+    if (nodes.nodes.size() > measured) nodes.origins.push_back(mean_of(rings.nodes_of_pole(), nodes.origins));
     return TableRow(theta_i, phi_i, std::move(nodes), measured, std::move(rings), azimuths == RowAzimuths::None,
                     options);
   }
   if (azimuths == RowAzimuths::Folded) add_mirror_images(nodes, tolerance);
-  Result<MeshRow> mesh = MeshRow::make(nodes);
+  Result<MeshRow> mesh = MeshRow::make(nodes.nodes);
   if (!mesh) return failure(std::move(mesh).error());
   return TableRow(theta_i, phi_i, std::move(nodes), measured, std::move(*mesh), false, options);
 }
 
-TableRow::TableRow(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes, std::size_t measured,
+TableRow::TableRow(Angle theta_i, Angle phi_i, MergedNodes nodes, std::size_t measured,
                    std::variant<RingRow, MeshRow> place, bool is_profile, const TableOptions& options)
     : theta_i_(theta_i),
       phi_i_(phi_i),
       tilt_{.mu = std::max(0.0, std::cos(theta_i.si())), .sin_theta = std::sin(theta_i.si())},
-      nodes_(std::move(nodes)),
+      nodes_(std::move(nodes.nodes)),
+      origins_(std::move(nodes.origins)),
       measured_(measured),
       place_(std::move(place)),
       widest_cell_(options.widest_cell.si()),
@@ -75,7 +90,7 @@ double TableRow::value(const Vector& r) const {
 
 TableRow::Value TableRow::value_and_more(const Vector& r) const {
   const Stencil stencil = locate(r);
-  Value value{.f = sum(stencil), .is_covered = stencil.is_inside && stencil.width <= widest_cell_};
+  Value value{.f = sum(stencil), .is_covered = is_covered(stencil)};
   const Vector from = in_profile(stencil.place);
   for (std::size_t k = 0; k < stencil.size; ++k) {
     const TableNode& node = nodes_[stencil.node[k]];

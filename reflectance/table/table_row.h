@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "reflectance/table/continuation.h"
 #include "reflectance/table/feature_motion.h"
+#include "reflectance/table/merge_readings.h"
 #include "reflectance/table/mesh_row.h"
 #include "reflectance/table/ring_row.h"
 #include "reflectance/table/table_options.h"
@@ -27,11 +28,16 @@ class TableRow {
   };
 
   /// `nodes` not empty. Errors: InvalidInput when scattered directions lie on one line.
-  [[nodiscard]] static Result<TableRow> make(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes,
-                                             RowAzimuths azimuths, const TableOptions& options);
+  [[nodiscard]] static Result<TableRow> make(Angle theta_i, Angle phi_i, MergedNodes nodes, RowAzimuths azimuths,
+                                             const TableOptions& options);
 
   [[nodiscard]] double value(const Vector& r) const;
   [[nodiscard]] Value value_and_more(const Vector& r) const;
+  /// The nodes that make up `value(r)` (without a continuation beyond the reach), and of which readings each is made.
+  [[nodiscard]] Stencil stencil(const Vector& r) const { return locate(r); }
+  [[nodiscard]] const Origins& origins(std::size_t node) const { return origins_[node]; }
+  /// Whether a stencil lies within the reach, in no hole.
+  [[nodiscard]] bool is_covered(const Stencil& s) const { return s.is_inside && s.width <= widest_cell_; }
   /// What the other readings of this incidence would say of node k: nothing, one answer, or two.
   [[nodiscard]] std::vector<double> without(std::size_t k) const;
   /// See MeshRow::quadrature.
@@ -44,7 +50,7 @@ class TableRow {
   [[nodiscard]] std::span<const TableNode> nodes() const { return std::span(nodes_).first(measured_); }
 
  private:
-  TableRow(Angle theta_i, Angle phi_i, std::vector<TableNode> nodes, std::size_t measured,
+  TableRow(Angle theta_i, Angle phi_i, MergedNodes nodes, std::size_t measured,
            std::variant<RingRow, MeshRow> place, bool is_profile, const TableOptions& options);
   [[nodiscard]] Stencil locate(const Vector& r) const;
   [[nodiscard]] double sum(const Stencil& stencil) const;
@@ -55,6 +61,7 @@ class TableRow {
   Angle phi_i_;
   IncidenceTilt tilt_;
   std::vector<TableNode> nodes_;
+  std::vector<Origins> origins_;  ///< as many
   std::size_t measured_;
   std::variant<RingRow, MeshRow> place_;
   Continuation continuation_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -11,6 +12,9 @@
 
 namespace gonio::reflectance {
 namespace {
+
+// A row of less weight than this says nothing of whether a place was measured.
+constexpr double kCounts = 1e-3;
 
 // By +phi for a row whose azimuths are phi_r itself.
 Vector turned(const Vector& r, Angle phi) {
@@ -40,6 +44,29 @@ std::vector<double> profile_arcs(const TableRow& row, Feature feature) {
   return kept;
 }
 
+void add_origins(Origins& origins, const TableRow& row, const Vector& place, double weight) {
+  const Stencil stencil = row.stencil(place);
+  for (std::size_t k = 0; k < stencil.size; ++k) {
+    for (const ReadingShare& share : row.origins(stencil.node[k])) {
+      origins.push_back({.reading = share.reading, .weight = weight * stencil.weight[k] * share.weight});
+    }
+  }
+}
+
+// Each reading once.
+Origins summed(Origins origins) {
+  std::stable_sort(origins.begin(), origins.end(),
+                   [](const ReadingShare& a, const ReadingShare& b) { return a.reading < b.reading; });
+  Origins once;
+  for (const ReadingShare& share : origins) {
+    if (!once.empty() && once.back().reading == share.reading)
+      once.back().weight += share.weight;
+    else
+      once.push_back(share);
+  }
+  return once;
+}
+
 // The surface at theta_i = 0, where no azimuth counts: what is left of a row when it is averaged over a turn, as it
 // lies about each of its features. There the two are as close to any view.
 TableRow normal_row(const TableRow& first, const TableOptions& options) {
@@ -47,18 +74,22 @@ TableRow normal_row(const TableRow& first, const TableOptions& options) {
   std::vector<Feature> features{*options.feature};
   if (options.both_features) features = {Feature::HotSpot, Feature::Lobe};
   const double weight = 1.0 / (kAzimuths * static_cast<double>(features.size()));
-  std::vector<TableNode> nodes;
+  MergedNodes nodes;
   for (const double theta : profile_arcs(first, features.front())) {
     TableNode mean{.r = {.x = std::sin(theta), .y = 0.0, .z = std::cos(theta)}};
+    Origins& origins = nodes.origins.emplace_back();
     for (int k = 0; k < kAzimuths; ++k) {
       const Vector r = turned(mean.r, radians(2.0 * std::numbers::pi * (k + 0.5) / kAzimuths));
       for (const Feature feature : features) {
-        const TableRow::Value value = first.value_and_more(moved(r, {}, first.tilt(), feature));
+        const Vector place = moved(r, {}, first.tilt(), feature);
+        const TableRow::Value value = first.value_and_more(place);
         mean.f += weight * value.f;
         mean.u += weight * value.u;
+        add_origins(origins, first, place, weight);
       }
     }
-    nodes.push_back(mean);
+    nodes.nodes.push_back(mean);
+    origins = summed(std::move(origins));
   }
   return TableRow::make(Angle{}, Angle{}, std::move(nodes), RowAzimuths::None, options).value();
 }
@@ -146,7 +177,6 @@ TabulatedSurface::Known TabulatedSurface::known_one_way(const Direction& i, cons
   const IncidenceBracket bracket = index_.bracket(i);
   Known known{.is_covered = bracket.is_covered, .distance = bracket.distance};
   at_places(bracket, i, in_frame(i, r), [&](const TableRow& from, const Vector& place, double weight) {
-    constexpr double kCounts = 1e-3;
     const TableRow::Value value = from.value_and_more(place);
     known.f += weight * value.f;
     known.u += weight * value.u;
@@ -154,6 +184,22 @@ TabulatedSurface::Known TabulatedSurface::known_one_way(const Direction& i, cons
     known.is_covered = known.is_covered && (value.is_covered || weight < kCounts);
   });
   return known;
+}
+
+bool TabulatedSurface::shares(const Direction& i, const Direction& r, std::vector<ReadingShare>& shares) const {
+  assert(options_.beyond == BeyondReach::Hold);
+  const IncidenceBracket bracket = index_.bracket(i);
+  bool is_covered = bracket.is_covered;
+  at_places(bracket, i, in_frame(i, r), [&](const TableRow& from, const Vector& place, double weight) {
+    const Stencil stencil = from.stencil(place);
+    is_covered = is_covered && (weight < kCounts || from.is_covered(stencil));
+    for (std::size_t k = 0; k < stencil.size; ++k) {
+      for (const ReadingShare& share : from.origins(stencil.node[k])) {
+        shares.push_back({.reading = share.reading, .weight = weight * stencil.weight[k] * share.weight});
+      }
+    }
+  });
+  return is_covered;
 }
 
 // Weights fall with the square of the distance from readings, down to a tenth of a degree: a reading prevails over what

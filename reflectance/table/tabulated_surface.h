@@ -73,6 +73,10 @@ class TabulatedSurface {
   [[nodiscard]] std::span<const TableRow> rows() const { return *rows_; }
   /// Without reciprocal mixing: what the readings under i say, never those under r.
   [[nodiscard]] Known known_one_way(const Direction& i, const Direction& r) const;
+  /// What part of the value at (i, r) each reading is: the weights of known_one_way, which sum to 1, in no order and a
+  /// reading perhaps more than once. False where `covers` is, without reciprocal mixing. Not for BeyondReach::Continue,
+  /// which is not linear in the readings (asserted).
+  [[nodiscard]] bool shares(const Direction& i, const Direction& r, std::vector<ReadingShare>& shares) const;
   [[nodiscard]] IncidenceBracket bracket(const Direction& i) const { return index_.bracket(i); }
   /// The row of a share of a bracket; one is made for the normal where it was not measured.
   [[nodiscard]] const TableRow& row(std::size_t k) const { return k < rows_->size() ? (*rows_)[k] : *normal_row_; }

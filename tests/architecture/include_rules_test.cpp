@@ -24,6 +24,7 @@ const std::map<std::string, Names>& allowed() {
       {"base", {}},
       {"reflectance", {"base"}},
       {"reflectance/formats", {"reflectance", "base"}},
+      {"reflectance/fit", {"reflectance", "base"}},
       {"calibration", {"reflectance", "base"}},
       {"protocol/stage", {"base"}},
       {"protocol/usbtmc", {"base"}},
@@ -32,7 +33,8 @@ const std::map<std::string, Names>& allowed() {
       {"sim", {"protocol/stage", "protocol/usbtmc", "reflectance", "reflectance/formats", "base"}},
       {"cli", {"protocol/api", "base"}},
       {"daemon",
-       {"drivers", "calibration", "reflectance", "reflectance/formats", "protocol/stage", "protocol/api", "base"}},
+       {"drivers", "calibration", "reflectance", "reflectance/formats", "reflectance/fit", "protocol/stage",
+        "protocol/api", "base"}},
   };
   return kAllowed;
 }
@@ -41,7 +43,8 @@ const std::map<std::string, Names>& allowed() {
 const std::vector<std::string>& foreign_headers() {
   static const std::vector<std::string> kForeign{"modbus",       "arv.h",      "SQLiteCpp/", "sqlite3.h",
                                                  "microhttpd.h", "curl/",      "toml++/",    "CLI/",
-                                                 "libusb",       "umockdev.h", "hdf5"};
+                                                 "libusb",       "umockdev.h", "hdf5",       "ceres/",
+                                                 "Eigen/"};
   return kForeign;
 }
 

@@ -1,0 +1,119 @@
+#include "reflectance/measured/compare_scans.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "reflectance/check/chi_square.h"
+#include "reflectance/measured/common_components.h"
+#include "reflectance/measured/geometry_index.h"
+
+namespace gonio::reflectance {
+namespace {
+
+DirectionPair pair_of(const MeasuredPoint& p) {
+  return {.i = incident_direction(p.geometry), .r = reflected_direction(p.geometry)};
+}
+
+// What is compared: the values of each gap, side by side.
+struct GapMembers {
+  std::vector<std::vector<GroupMember>> groups;
+  double sum_first = 0.0;
+  double sum_second = 0.0;
+};
+
+void add_gap(ScanComparison& comparison, GapMembers& members, PointGap gap, GroupMember a, GroupMember b) {
+  SharedEffects left = a.shared;
+  left.add(b.shared, -1.0);
+  const double difference = a.value - b.value;
+  const double u = std::hypot(a.u_random, b.u_random, size_of(left));
+  gap.difference = per_steradian(difference);
+  gap.u = per_steradian(u);
+  gap.z = difference / u;
+  comparison.gaps.push_back(gap);
+  members.sum_first += a.value;
+  members.sum_second += b.value;
+  members.groups.push_back({std::move(a), std::move(b)});
+}
+
+Result<ScanComparison> finished(ScanComparison comparison, const GapMembers& members) {
+  const Result<GroupChiSquare> chi = group_chi_square(members.groups);
+  if (!chi) return failure(chi.error());
+  comparison.chi2 = chi->chi2;
+  comparison.degrees_of_freedom = chi->degrees_of_freedom;
+  comparison.p_value = chi_square_probability(chi->chi2, static_cast<double>(chi->degrees_of_freedom));
+  if (members.sum_second != 0.0) comparison.mean_ratio = members.sum_first / members.sum_second;
+  return comparison;
+}
+
+}  // namespace
+
+const PointGap* ScanComparison::worst() const {
+  const auto at = std::max_element(gaps.begin(), gaps.end(), [](const PointGap& a, const PointGap& b) {
+    return std::abs(a.z) < std::abs(b.z);
+  });
+  return at == gaps.end() ? nullptr : &*at;
+}
+
+Result<ScanComparison> compare_scans(const MeasuredScan& first, const MeasuredScan& second,
+                                     const CompareOptions& options) {
+  GONIO_TRY(check_tolerance(options.tolerance));
+  for (const MeasuredScan* scan : {&first, &second}) {
+    GONIO_TRY(check(*scan));
+    GONIO_TRY(check_random_parts(*scan));
+  }
+  CommonComponents components;
+  const std::vector<std::uint32_t> numbers_first = components.add(first);
+  const std::vector<std::uint32_t> numbers_second = components.add(second);
+  GeometryIndex index(options);
+  const std::vector<std::size_t> others = usable_points(second);
+  for (const std::size_t k : others) index.add(pair_of(second.points[k]), k);
+  ScanComparison comparison{.unpaired_second = others.size()};
+  GapMembers members;
+  for (const std::size_t k : usable_points(first)) {
+    const MeasuredPoint& p = first.points[k];
+    const auto partner = index.nearest(pair_of(p));
+    if (!partner) {
+      ++comparison.unpaired_first;
+      continue;
+    }
+    index.take(*partner);
+    --comparison.unpaired_second;
+    add_gap(comparison, members, {.first = k, .second = *partner, .geometry = p.geometry}, group_member(p, numbers_first),
+            group_member(second.points[*partner], numbers_second));
+  }
+  if (!comparison.gaps.empty()) return finished(std::move(comparison), members);
+  return failure({.code = ErrorCode::InvalidInput,
+                  .tried = fmt::format("compare the scans \"{}\" and \"{}\"", first.name, second.name),
+                  .seen = fmt::format("no geometry of {} and {} points is common", comparison.unpaired_first,
+                                      comparison.unpaired_second),
+                  .limit = fmt::format("at least one within {:.6g} deg", in_degrees(options.tolerance))});
+}
+
+Result<ScanComparison> compare_with_surface(const MeasuredScan& scan, const Surface& surface) {
+  GONIO_TRY(check(scan));
+  GONIO_TRY(check_random_parts(scan));
+  // An exact partner, as far as sums of weights go.
+  constexpr double kAsGoodAsExact = 1e-9;
+  CommonComponents components;
+  const std::vector<std::uint32_t> numbers = components.add(scan);
+  ScanComparison comparison;
+  GapMembers members;
+  for (const std::size_t k : usable_points(scan)) {
+    const MeasuredPoint& p = scan.points[k];
+    const double f = surface.eval(p.geometry).si();
+    if (!std::isfinite(f)) {
+      return failure({.code = ErrorCode::InvalidInput,
+                      .tried = fmt::format("compare the scan \"{}\" with a surface \"{}\"", scan.name, surface.model()),
+                      .seen = fmt::format("the surface is {} /sr at point {}", f, k),
+                      .limit = "a finite number"});
+    }
+    add_gap(comparison, members, {.first = k, .second = k, .geometry = p.geometry}, group_member(p, numbers),
+            {.value = f, .u_random = kAsGoodAsExact * p.u_random.si(), .shared = {}});
+  }
+  return finished(std::move(comparison), members);
+}
+
+}  // namespace gonio::reflectance
