@@ -151,8 +151,8 @@ constexpr std::array kSea{kWind, kWaterIndex};
 constexpr std::array kSlopes{FormulaParameter{.name = "slope_variance", .start = 0.04, .least = 1e-6, .most = 1.0},
                              kIndex};
 constexpr std::array kFacets{kRoughness, kIndex};
-constexpr std::array kWaterBody{
-    FormulaParameter{.name = "rho_w", .start = 0.02, .least = 0.0, .most = 1.0}, kWaterIndex};
+constexpr std::array kWaterBody{FormulaParameter{.name = "rho_w", .start = 0.02, .least = 0.0, .most = 1.0},
+                                kWaterIndex};
 
 constexpr std::array kFormulas{
     FitFormula{"lambertian", kLambertian, lambertian},

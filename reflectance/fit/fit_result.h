@@ -21,8 +21,8 @@ struct FittedParameter {
   double least = 0.0;
   double most = 1.0;
   bool is_fixed = false;
-  bool is_at_bound = false;    ///< the fit would go on: u says little then
-  bool is_determined = true;   ///< else the data know it no better than its bounds do
+  bool is_at_bound = false;         ///< the fit would go on: u says little then
+  bool is_determined = true;        ///< else the data know it no better than its bounds do
   std::vector<double> per_reading;  ///< d number / d value of each point of the scan [per sr^-1]; empty when fixed
 };
 

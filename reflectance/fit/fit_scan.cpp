@@ -43,11 +43,11 @@ Result<std::vector<FitReading>> readings_of(const MeasuredScan& scan, const FitM
       return failure(refused_fit(scan, model, fmt::format("point {}: u_random 0 /sr", k),
                                  "above 0; or even weights, with u from the scatter"));
     }
-    FitReading reading{.point = k,
-                       .pair = pair_terms(reflectance::incident_direction(p.geometry),
-                                          reflectance::reflected_direction(p.geometry)),
-                       .value = p.value.si(),
-                       .error = {.u_random = 1.0, .shared = {}}};
+    FitReading reading{
+        .point = k,
+        .pair = pair_terms(reflectance::incident_direction(p.geometry), reflectance::reflected_direction(p.geometry)),
+        .value = p.value.si(),
+        .error = {.u_random = 1.0, .shared = {}}};
     if (weights == FitWeights::Stated) {
       reading.error = {.u_random = p.u_random.si(), .shared = reflectance::SharedEffects(p.shared)};
     }

@@ -17,14 +17,14 @@ enum class FitWeights : std::uint8_t {
 
 struct FitOptions {
   FitWeights weights = FitWeights::Stated;
-  int starts = 6;            ///< the model's own first, then others drawn within the bounds; 1 to 100
-  std::uint64_t seed = 1;    ///< of those
+  int starts = 6;             ///< the model's own first, then others drawn within the bounds; 1 to 100
+  std::uint64_t seed = 1;     ///< of those
   int most_iterations = 100;  ///< of each
 };
 
 /// Fits the model's free numbers to the scan's usable points by generalised least squares (JCGM 100:2008, H.3; JCGM
-/// 102). Covariance: (J^T V^-1 J)^-1. Errors of shared components are taken as proportional to the value and scaled with
-/// the fitted one, lest readings that are low by chance weigh more (Peelle's puzzle).
+/// 102). Covariance: (J^T V^-1 J)^-1. Errors of shared components are taken as proportional to the value and scaled
+/// with the fitted one, lest readings that are low by chance weigh more (Peelle's puzzle).
 ///
 /// A direction in the space of the numbers along which the data tell less than an even spread over the bounds (u above
 /// 1/sqrt(12) of their width) makes those that take part in it undetermined; the bounds then count as a prior.

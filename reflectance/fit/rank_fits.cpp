@@ -10,10 +10,7 @@ namespace gonio::fit {
 namespace {
 
 Error not_comparable(std::string seen, std::string limit) {
-  return {.code = ErrorCode::InvalidInput,
-          .tried = "rank fits",
-          .seen = std::move(seen),
-          .limit = std::move(limit)};
+  return {.code = ErrorCode::InvalidInput, .tried = "rank fits", .seen = std::move(seen), .limit = std::move(limit)};
 }
 
 // A tenth of u up, or down where the bound is in the way.

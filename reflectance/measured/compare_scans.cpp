@@ -51,9 +51,8 @@ Result<ScanComparison> finished(ScanComparison comparison, const GapMembers& mem
 }  // namespace
 
 const PointGap* ScanComparison::worst() const {
-  const auto at = std::max_element(gaps.begin(), gaps.end(), [](const PointGap& a, const PointGap& b) {
-    return std::abs(a.z) < std::abs(b.z);
-  });
+  const auto at = std::max_element(gaps.begin(), gaps.end(),
+                                   [](const PointGap& a, const PointGap& b) { return std::abs(a.z) < std::abs(b.z); });
   return at == gaps.end() ? nullptr : &*at;
 }
 
@@ -81,8 +80,8 @@ Result<ScanComparison> compare_scans(const MeasuredScan& first, const MeasuredSc
     }
     index.take(*partner);
     --comparison.unpaired_second;
-    add_gap(comparison, members, {.first = k, .second = *partner, .geometry = p.geometry}, group_member(p, numbers_first),
-            group_member(second.points[*partner], numbers_second));
+    add_gap(comparison, members, {.first = k, .second = *partner, .geometry = p.geometry},
+            group_member(p, numbers_first), group_member(second.points[*partner], numbers_second));
   }
   if (!comparison.gaps.empty()) return finished(std::move(comparison), members);
   return failure({.code = ErrorCode::InvalidInput,

@@ -16,8 +16,8 @@ struct Guide {
   Surface surface;
 };
 
-/// The guides worth trying on a scan, found without a fit: "flat" (the readings as they are), "matte" (the bowl, bell or
-/// hot spot that fits best, of 66 shapes of Rahman, Pinty and Verstraete), "lobe" (facets on a diffuse ground, the
+/// The guides worth trying on a scan, found without a fit: "flat" (the readings as they are), "matte" (the bowl, bell
+/// or hot spot that fits best, of 66 shapes of Rahman, Pinty and Verstraete), "lobe" (facets on a diffuse ground, the
 /// best of 36). A guide is left out where it is not above 0 at all readings. The scan has passed `check`.
 [[nodiscard]] std::vector<Guide> candidate_guides(const MeasuredScan& scan);
 

@@ -23,6 +23,9 @@ struct InterpolationCandidate {
   Brdf cv_rms;                ///< of the differences; some four times the error between readings, noise included
   Brdf cv_most;               ///< the largest of them
   double cv_relative = 0.0;   ///< cv_rms by the root mean square of the readings
+  /// What is left of cv_relative without the noise that the readings state, by 4: the relative error between readings,
+  /// u of any weighted sum of them if all of it were of one sign.
+  double u_relative = 0.0;
 };
 
 /// The scan as a surface, chosen by cross-validation.
@@ -30,7 +33,9 @@ struct Interpolation {
   std::vector<InterpolationCandidate> candidates;  ///< best first; at least one
 
   [[nodiscard]] const ScanInterpolant& best() const { return candidates.front().interpolant; }
-  /// The next best, if its cross-validation is no worse than `kRivalRatio` of the best's: what the choice is worth.
+  /// The next best: what the choice is worth. Null where there is none.
+  [[nodiscard]] const ScanInterpolant* next() const;
+  /// The same if its cross-validation is no worse than `kRivalRatio` of the best's, so that it might be as right.
   [[nodiscard]] const ScanInterpolant* rival() const;
   static constexpr double kRivalRatio = 1.5;
 };

@@ -45,9 +45,9 @@ Result<void> check_numbers(const MeasuredScan& scan, std::size_t k) {
                              fmt::format("below {}, the number of components", scan.components.size())));
     }
     if (std::isfinite(e.per_sd.si())) continue;
-    return failure(refused(
-        scan, fmt::format("point {}: effect of {} {} /sr", k, scan.components[e.component].name, e.per_sd.si()),
-        "a finite number"));
+    return failure(
+        refused(scan, fmt::format("point {}: effect of {} {} /sr", k, scan.components[e.component].name, e.per_sd.si()),
+                "a finite number"));
   }
   return {};
 }

@@ -91,9 +91,8 @@ void add_sky(const Sky& sky, double weight, bool only_zenith_angle, NodeLevel le
 
 std::vector<HemisphereNode> feature_nodes(const Direction& axis, Feature feature, NodeLevel level) {
   const double side = feature == Feature::Lobe ? -1.0 : 1.0;
-  const IncidenceTilt tilt = feature == Feature::Smooth
-                                 ? IncidenceTilt{}
-                                 : IncidenceTilt{.mu = axis.mu(), .sin_theta = axis.sin_theta()};
+  const IncidenceTilt tilt =
+      feature == Feature::Smooth ? IncidenceTilt{} : IncidenceTilt{.mu = axis.mu(), .sin_theta = axis.sin_theta()};
   const PolarSize size = polar_size(level);
   const UnitRule& rule = gauss_legendre(size.arcs);
   std::vector<HemisphereNode> nodes;

@@ -20,8 +20,8 @@ struct PairNode {
 enum class NodeLevel : std::uint8_t { Coarse, Fine };
 
 /// Directions over the hemisphere with their mu dOmega, in polar coordinates about what stands out under `axis`
-/// (itself for a hot spot, its mirror direction for a lobe, the normal else) and dense there and at the horizon: 1152 or
-/// 2400 of them.
+/// (itself for a hot spot, its mirror direction for a lobe, the normal else) and dense there and at the horizon: 1152
+/// or 2400 of them.
 [[nodiscard]] std::vector<HemisphereNode> feature_nodes(const Direction& axis, Feature feature, NodeLevel level);
 
 /// The zenith angles (at phi = 0, or 8 azimuths each of an anisotropic surface) over which a quantity of all incidences

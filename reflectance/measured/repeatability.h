@@ -22,8 +22,8 @@ struct RepeatedPoint {
 /// One scan among the others.
 struct ScanOffset {
   std::string name;
-  std::size_t points = 0;     ///< that other scans have, too
-  double mean_offset = 0.0;   ///< relative, from the means of the geometries, each counting by the size of its mean
+  std::size_t points = 0;    ///< that other scans have, too
+  double mean_offset = 0.0;  ///< relative, from the means of the geometries, each counting by the size of its mean
 };
 
 struct Repeatability {
@@ -35,8 +35,8 @@ struct Repeatability {
   double p_value = 1.0;
 };
 
-/// How well the scans of a campaign repeat. Only what does not cancel counts, as for compare_scans. Errors: InvalidInput
-/// for fewer than two scans or no geometry that two of them have; else as compare_scans.
+/// How well the scans of a campaign repeat. Only what does not cancel counts, as for compare_scans. Errors:
+/// InvalidInput for fewer than two scans or no geometry that two of them have; else as compare_scans.
 [[nodiscard]] Result<Repeatability> repeatability(std::span<const MeasuredScan> scans,
                                                   const CompareOptions& options = {});
 

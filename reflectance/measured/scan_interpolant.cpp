@@ -14,8 +14,7 @@ Result<TabulatedSurface> table_of(std::span<const TableReading> readings, TableO
   Result<TabulatedSurface> table = TabulatedSurface::make(readings, options);
   if (table || options.layout == TableLayout::Rings) return table;
   options.layout = TableLayout::Rings;  // all of an incidence's in one plane
-  Result<TabulatedSurface> rings = TabulatedSurface::make(readings, options);
-  return rings ? std::move(rings) : std::move(table);
+  return TabulatedSurface::make(readings, options);
 }
 
 // A thousandth of the guide's mean over the readings.

@@ -95,9 +95,11 @@ ScanQuantity ScanQuantities::of(const char* name, const std::vector<PairNode>& f
                  .value = sum.value(),
                  .u_random = readings.random,
                  .u_shared = readings.shared};
-  if (const ScanInterpolant* rival = interpolation_.rival()) {
-    const NodeSum other = bare_node_sum(*rival, fine);
-    q.u_interpolation = as_rectangle(other.measured - sum.measured);
+  q.u_interpolation = interpolation_.candidates.front().u_relative * std::abs(sum.measured);
+  if (const ScanInterpolant* next = interpolation_.next()) {
+    const NodeSum other = bare_node_sum(*next, fine);
+    const double between = as_rectangle(other.measured - sum.measured);
+    if (interpolation_.rival() != nullptr) q.u_interpolation = std::max(q.u_interpolation, between);
     if (!cap_) q.u_modelled = as_rectangle(other.modelled - sum.modelled);
   }
   if (cap_) q.u_modelled = between_models(*cap_, sum);
@@ -120,11 +122,11 @@ Result<void> ScanQuantities::check_incidence(const Direction& i) const {
     first = std::min(first, row.theta_i());
     last = std::max(last, row.theta_i());
   }
-  return failure({.code = ErrorCode::InvalidInput,
-                  .tried = fmt::format("integrate the scan \"{}\" under theta_i {:.6g} deg", scan_.name,
-                                       in_degrees(i.theta())),
-                  .seen = fmt::format("it was measured under {:.6g} to {:.6g} deg", in_degrees(first), in_degrees(last)),
-                  .limit = "a measured incidence, or a fitted model that goes on from there"});
+  return failure(
+      {.code = ErrorCode::InvalidInput,
+       .tried = fmt::format("integrate the scan \"{}\" under theta_i {:.6g} deg", scan_.name, in_degrees(i.theta())),
+       .seen = fmt::format("it was measured under {:.6g} to {:.6g} deg", in_degrees(first), in_degrees(last)),
+       .limit = "a measured incidence, or a fitted model that goes on from there"});
 }
 
 Result<void> ScanQuantities::check_incidences() const {

@@ -20,7 +20,8 @@ namespace gonio::reflectance {
 /// threads: any.
 class ScanQuantities {
  public:
-  /// Errors: as `check` and `interpolate_scan`; InvalidInput for a cap whose `per_reading` are not as many as the points.
+  /// Errors: as `check` and `interpolate_scan`; InvalidInput for a cap whose `per_reading` are not as many as the
+  /// points.
   [[nodiscard]] static Result<ScanQuantities> make(MeasuredScan scan, const InterpolationOptions& options = {},
                                                    std::optional<CapModel> cap = std::nullopt);
 

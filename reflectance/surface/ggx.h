@@ -15,7 +15,7 @@
 namespace gonio::reflectance {
 
 struct GgxParameters {
-  double roughness = 0.1;         ///< alpha, 0.001 to 1: the slope at which the density of facets has fallen to a fourth
+  double roughness = 0.1;  ///< alpha, 0.001 to 1: the slope at which the density of facets has fallen to a fourth
   double refractive_index = 1.5;  ///< below over above the surface, 1 to 1e12 (which mirrors all but 4e-12)
 };
 

@@ -61,7 +61,8 @@ Result<Surface> make_cox_munk(Values v) {
   return make_glint<shadowing>(std::array{cox_munk_slope_variance(v[0]), v[1]});
 }
 
-constexpr ModelSpec kBeckmann{"beckmann", "facets with Gaussian slopes by their roughness, Smith shadowing", kFacetParameters};
+constexpr ModelSpec kBeckmann{"beckmann", "facets with Gaussian slopes by their roughness, Smith shadowing",
+                              kFacetParameters};
 
 // alpha^2 is the variance of both slope components together; at the least of one the square rounds below that of the
 // other.

@@ -50,8 +50,8 @@ class TableRow {
   [[nodiscard]] std::span<const TableNode> nodes() const { return std::span(nodes_).first(measured_); }
 
  private:
-  TableRow(Angle theta_i, Angle phi_i, MergedNodes nodes, std::size_t measured,
-           std::variant<RingRow, MeshRow> place, bool is_profile, const TableOptions& options);
+  TableRow(Angle theta_i, Angle phi_i, MergedNodes nodes, std::size_t measured, std::variant<RingRow, MeshRow> place,
+           bool is_profile, const TableOptions& options);
   [[nodiscard]] Stencil locate(const Vector& r) const;
   [[nodiscard]] double sum(const Stencil& stencil) const;
   [[nodiscard]] Vector in_profile(const Vector& r) const;

@@ -9,14 +9,30 @@
 #include "reflectance/surface/make_surface.h"
 #include "sim/scene/read_faults.h"
 #include "sim/scene/read_sections.h"
+#include "sim/scene/read_surface_file.h"
 
 namespace gonio::sim {
 namespace {
 
-// The terms of [sample]: one model, or [[sample.terms]], each with a weight.
+// A measured surface: `file`, beside the scene.
+std::optional<reflectance::SurfaceTerm> read_file_term(TomlReader& table, double weight) {
+  const std::string name = table.text("file");
+  const std::string channel = table.text_or("channel", "");
+  if (table.has_failed()) return std::nullopt;
+  const auto path = std::filesystem::path(table.file()).parent_path() / name;
+  auto surface = surface_of_file(path.string(), channel);
+  if (!surface) {
+    table.fail("file", surface.error().code, describe(surface.error()), surface.error().limit);
+    return std::nullopt;
+  }
+  return reflectance::SurfaceTerm{*std::move(surface), weight};
+}
+
+// The terms of [sample]: one model or file, or [[sample.terms]], each with a weight.
 std::optional<reflectance::SurfaceTerm> read_term(TomlReader& table, bool has_weight) {
-  const std::string model = table.text("model");
   const double weight = has_weight ? table.number("weight", {.least = 0.0}) : 1.0;
+  if (table.kind("file") != TomlKind::Absent) return read_file_term(table, weight);
+  const std::string model = table.text("model");
   reflectance::Parameters parameters;
   for (const std::string& key : table.keys()) {
     if (key == "model" || key == "weight") continue;

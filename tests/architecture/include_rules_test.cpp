@@ -41,10 +41,9 @@ const std::map<std::string, Names>& allowed() {
 
 // Header prefix of a foreign library, and in how many files of one room it may appear: one, its adapter.
 const std::vector<std::string>& foreign_headers() {
-  static const std::vector<std::string> kForeign{"modbus",       "arv.h",      "SQLiteCpp/", "sqlite3.h",
-                                                 "microhttpd.h", "curl/",      "toml++/",    "CLI/",
-                                                 "libusb",       "umockdev.h", "hdf5",       "ceres/",
-                                                 "Eigen/"};
+  static const std::vector<std::string> kForeign{"modbus", "arv.h",   "SQLiteCpp/", "sqlite3.h", "microhttpd.h",
+                                                 "curl/",  "toml++/", "CLI/",       "libusb",    "umockdev.h",
+                                                 "hdf5",   "ceres/",  "Eigen/"};
   return kForeign;
 }
 

@@ -52,6 +52,50 @@ TEST(ReadScene, MakesTheWheatOfTheNotes) {
   EXPECT_NEAR(f.si(), 0.175707298205257, 1e-14);
 }
 
+// Rings of a canopy as a lab would hand them over: our CSV, without its sidecar.
+std::string readings_csv() {
+  std::string csv = "theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_per_sr,wavelength_nm\n";
+  for (const int theta_i : {0, 30, 60}) {
+    for (const int theta_r : {10, 30, 50, 70}) {
+      for (int phi = 0; phi < 360; phi += 30) {
+        const double f = 0.1 + 0.001 * theta_r + (theta_i == 30 && theta_r == 30 && phi == 60 ? 0.5 : 0.0);
+        csv += std::to_string(theta_i) + ",0," + std::to_string(theta_r) + "," + std::to_string(phi) + "," +
+               std::to_string(f) + ",550\n";
+      }
+    }
+  }
+  return csv;
+}
+
+TEST(ReadScene, TakesAMeasuredSurfaceFromTheFileBesideIt) {
+  const TemporaryFolder folder;
+  write_text(folder / "canopy.csv", readings_csv());
+  write_text(folder / "x.toml", scene_text({}, "[sample]\nfile = \"canopy.csv\"\nchannel = \"550nm\"\n"));
+
+  const auto scene = read_scene(folder / "x.toml");
+
+  ASSERT_TRUE(scene.has_value()) << describe(scene.error());
+  const Truth truth(*scene);
+  EXPECT_NEAR(truth.sample({degrees(30.0), degrees(0.0), degrees(30.0), degrees(60.0)}).si(), 0.63, 1e-9);
+  EXPECT_NEAR(truth.sample({degrees(30.0), degrees(0.0), degrees(50.0), degrees(270.0)}).si(), 0.15, 1e-9);
+}
+
+TEST(ReadScene, SaysWhatIsWrongWithAMeasuredSurface) {
+  const TemporaryFolder folder;
+  write_text(folder / "canopy.csv", readings_csv());
+  write_text(folder / "poem.csv", "No BRDF at all.\n");
+  const auto refused = [&](const std::string& sample) {
+    write_text(folder / "x.toml", scene_text({}, "[sample]\n" + sample));
+    return read_scene(folder / "x.toml").error();
+  };
+
+  EXPECT_EQ(refused("file = \"none.csv\"\n").code, ErrorCode::FileUnreadable);
+  EXPECT_EQ(refused("file = \"poem.csv\"\n").code, ErrorCode::InvalidInput);
+  const Error channel = refused("file = \"canopy.csv\"\nchannel = \"600nm\"\n");
+  EXPECT_THAT(channel.seen, testing::HasSubstr("no channel \"600nm\""));
+  EXPECT_EQ(channel.where->field, "sample.file");
+}
+
 TEST(ReadScene, NamesTheUnknownKeyItsLineAndTheNearestName) {
   const auto scene = read_text(scene_text("time_scal = 40.0\n"));
 

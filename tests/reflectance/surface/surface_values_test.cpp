@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "reflectance/integral/directional_reflectance.h"
 #include "reflectance/surface/hapke.h"
 #include "tests/reflectance/printed.h"
 #include "tests/reflectance/surfaces.h"
@@ -49,6 +50,25 @@ TEST(Minnaert, MatchesTheReference) {
   EXPECT_TRUE(agrees(std::numbers::pi * s.eval(geometry(0, 45, 0)).si(), "0.420448207626857", 1e-14));
   // Both cosines count, wherever the azimuth: rho/pi (cos 30 cos 60)^0.5.
   expect_points(s, {{30, 60, 123, "0.104729842318088131"}, {60, 30, -7, "0.104729842318088131"}});
+}
+
+// By vectors as Walter et al. (2007) write it, Fresnel's formula in Cook and Torrance's form, 20 digits.
+TEST(Facets, MatchTheReferenceInBothDistributions) {
+  expect_points(surface("ggx", {{"roughness", 0.3}, {"refractive_index", 1.5}}), {{0, 0, 0, "0.0353677651315323"},
+                                                                                  {30, 0, 0, "0.014437834839131"},
+                                                                                  {30, 30, 180, "0.0482339203822854"},
+                                                                                  {30, 60, 180, "0.0340494948697298"},
+                                                                                  {30, 30, 0, "0.00373357862695259"},
+                                                                                  {60, 60, 180, "0.279901943889786"},
+                                                                                  {85, 85, 180, "19.9701021717627"}});
+  expect_points(surface("beckmann", {{"roughness", 0.3}, {"refractive_index", 1.5}}),
+                {{0, 0, 0, "0.0353677651315323"},
+                 {30, 0, 0, "0.0211701048437998"},
+                 {30, 30, 180, "0.0489520827719106"},
+                 {30, 60, 180, "0.0530527995240711"},
+                 {30, 30, 0, "0.00206502705794488"},
+                 {60, 60, 180, "0.315204756887822"},
+                 {85, 85, 180, "34.0177474473846"}});
 }
 
 TEST(Hapke, MatchesTheReferenceInBothForms) {

@@ -1,0 +1,151 @@
+#include "reflectance/measured/compare_scans.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "reflectance/check/symmetry_check.h"
+#include "reflectance/measured/repeatability.h"
+#include "tests/reflectance/measured/simulated_scan.h"
+#include "tests/reflectance/surfaces.h"
+
+namespace gonio::reflectance::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The standard is the same for both, its errors too; all else is drawn anew.
+const SimulatedErrors kErrors{.certificate = 0.05, .limb = 0.0, .zero_theta_r = 0.0};
+
+MeasuredScan scan_of(const Surface& truth, std::uint64_t seed) {
+  return simulated_scan(truth, geometries({}), kErrors, seed);
+}
+
+// The second scan with the certificate's error of the first.
+MeasuredScan with_one_certificate(MeasuredScan scan, double factor) {
+  for (MeasuredPoint& p : scan.points) p.value = factor * p.value;
+  return scan;
+}
+
+TEST(CompareScans, CountsOnlyWhatDoesNotCancel) {
+  MeasuredScan a = perfect_scan(wheat(), geometries({}), 1e-3);
+  MeasuredScan b = a;
+  a.components = {{"certificate", "standard 7"}, {"own", ""}};
+  b.components = {{"own", ""}, {"certificate", "standard 7"}};
+  a.points[0].shared = {{0, per_steradian(0.04)}, {1, per_steradian(0.003)}};
+  b.points[0].shared = {{0, per_steradian(0.002)}, {1, per_steradian(0.036)}};
+
+  const ScanComparison comparison = compare_scans(a, b).value();
+
+  // sqrt(2 u_random^2 + (0.04 - 0.036)^2 + 0.003^2 + 0.002^2).
+  EXPECT_NEAR(comparison.gaps[0].u.si(), std::sqrt(2e-6 + 16e-6 + 9e-6 + 4e-6), 1e-12);
+  EXPECT_NEAR(comparison.gaps[1].u.si(), std::sqrt(2e-6), 1e-12);
+}
+
+TEST(CompareScans, FindsThatTwoScansOfOneSampleAgree) {
+  const ScanComparison comparison = compare_scans(with_one_certificate(scan_of(wheat(), 11), 1.0),
+                                                  with_one_certificate(scan_of(wheat(), 12), 1.0), {})
+                                        .value();
+
+  // Their certificates' errors were drawn apart, though both state the same source.
+  EXPECT_LT(comparison.p_value, 1e-3);
+
+  SimulatedErrors no_certificate = kErrors;
+  no_certificate.certificate = 0.0;
+  const ScanComparison same = compare_scans(simulated_scan(wheat(), geometries({}), no_certificate, 11),
+                                            simulated_scan(wheat(), geometries({}), no_certificate, 12))
+                                  .value();
+  EXPECT_GT(same.p_value, 1e-3);
+  EXPECT_NEAR(same.mean_ratio, 1.0, 2e-3);
+  EXPECT_EQ(same.degrees_of_freedom, same.gaps.size());
+}
+
+TEST(CompareScans, CountsPointsWithoutAPartner) {
+  const MeasuredScan a = perfect_scan(wheat(), {geometry(0, 10, 0), geometry(0, 20, 0), geometry(0, 30, 0)});
+  const MeasuredScan b = perfect_scan(wheat(), {geometry(0, 20.04, 0), geometry(0, 50, 0)});
+
+  const ScanComparison comparison = compare_scans(a, b).value();
+
+  ASSERT_EQ(comparison.gaps.size(), 1U);
+  EXPECT_EQ(comparison.gaps[0].first, 1U);
+  EXPECT_EQ(comparison.gaps[0].second, 0U);
+  EXPECT_EQ(comparison.unpaired_first, 2U);
+  EXPECT_EQ(comparison.unpaired_second, 1U);
+}
+
+TEST(CompareScans, MeetsATurnedSampleWhereToldThatItIsIsotropic) {
+  Geometry turned = geometry(30, 40, 70);
+  turned.phi_i += degrees(90.0);
+  turned.phi_r += degrees(90.0);
+  const MeasuredScan a = perfect_scan(wheat(), {geometry(30, 40, 70)});
+  const MeasuredScan b = perfect_scan(wheat(), {turned});
+  const MeasuredScan mirrored = perfect_scan(wheat(), {geometry(30, 40, -70)});
+
+  EXPECT_THAT(compare_scans(a, b).error().seen, HasSubstr("no geometry"));
+  EXPECT_TRUE(compare_scans(a, b, {.sameness = Sameness::Turned}));
+  EXPECT_FALSE(compare_scans(a, mirrored, {.sameness = Sameness::Turned}));
+  EXPECT_TRUE(compare_scans(a, mirrored, {.sameness = Sameness::TurnedOrMirrored}));
+}
+
+TEST(CompareScans, RefusesReadingsWithoutUncertainty) {
+  MeasuredScan bare = scan_of(wheat(), 1);
+  bare.points[4].u_random = {};
+
+  EXPECT_THAT(compare_scans(bare, scan_of(wheat(), 2)).error().seen, HasSubstr("point 4: u_random 0"));
+  EXPECT_FALSE(compare_with_surface(bare, wheat()));
+}
+
+TEST(CompareWithSurface, HoldsForTheTruthAndNotForAnother) {
+  const MeasuredScan scan = simulated_scan(wheat(), geometries({}), {}, 21);
+
+  const ScanComparison with_truth = compare_with_surface(scan, wheat()).value();
+  const ScanComparison with_other =
+      compare_with_surface(scan, surface("rpv", {{"rho0", 0.133}, {"k", 0.80}, {"g", -0.114}})).value();
+
+  EXPECT_GT(with_truth.p_value, 1e-3);
+  EXPECT_EQ(with_truth.degrees_of_freedom, scan.points.size());
+  EXPECT_LT(with_other.p_value, 1e-6);
+  EXPECT_GT(std::abs(with_other.worst()->z), 4.0);
+}
+
+TEST(ScanSymmetry, IsCheckedByTheScansOwnSharedParts) {
+  MeasuredScan scan = simulated_scan(wheat(), geometries({}), {}, 31);
+  const ScanSymmetryPoints points = symmetry_points(scan);
+
+  const SymmetryReport report =
+      check_symmetry(Symmetry::Reciprocity, points.points, {.sameness = Sameness::TurnedOrMirrored}).value();
+
+  EXPECT_GT(report.gaps.size(), 20U);
+  EXPECT_GT(report.p_value, 1e-3);
+}
+
+TEST(Repeatability, TellsScatterAndTheScanThatStandsOut) {
+  SimulatedErrors errors;
+  errors.certificate = errors.limb = errors.zero_theta_r = errors.background = 0.0;
+  std::vector<MeasuredScan> scans;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    scans.push_back(simulated_scan(wheat(), geometries({}), errors, seed));
+    scans.back().components.clear();
+    for (MeasuredPoint& p : scans.back().points) p.shared.clear();
+  }
+  const Repeatability good = repeatability(scans).value();
+  scans[3] = with_one_certificate(scans[3], 1.02);
+  const Repeatability bad = repeatability(scans).value();
+
+  EXPECT_NEAR(good.relative_scatter, errors.noise, 0.1 * errors.noise);
+  EXPECT_GT(good.p_value, 1e-3);
+  EXPECT_EQ(good.points.front().count, 5U);
+  EXPECT_LT(bad.p_value, 1e-6);
+  EXPECT_NEAR(bad.scans[3].mean_offset, 0.02 * 0.8, 2e-3);
+  EXPECT_NEAR(bad.scans[0].mean_offset, -0.02 * 0.2, 2e-3);
+}
+
+TEST(Repeatability, NeedsTwoScansWithAGeometryInCommon) {
+  const std::vector<MeasuredScan> one{perfect_scan(wheat(), {geometry(0, 10, 0)})};
+  const std::vector<MeasuredScan> apart{one[0], perfect_scan(wheat(), {geometry(0, 20, 0)})};
+
+  EXPECT_EQ(repeatability(one).error().seen, "1 scans");
+  EXPECT_THAT(repeatability(apart).error().seen, HasSubstr("no geometry"));
+}
+
+}  // namespace
+}  // namespace gonio::reflectance::test
