@@ -144,6 +144,23 @@ TEST(RhoDh, MatchesTheReferenceForASeaWithSmithShadowing) {
                {89, "0.333593199"}});
 }
 
+// By mpmath's adaptive quadrature of the formula in vectors (Walter et al. 2007), 15 digits.
+TEST(RhoDh, MatchesTheReferenceForFacetsWithALongTail) {
+  expect_rows(surface("ggx", {{"roughness", 0.3}, {"refractive_index", 1.5}}), 1e-9,
+              {{0, "0.0355973437"}, {30, "0.0376080325"}, {60, "0.0609831982"}});
+}
+
+TEST(RhoDh, OfFacetsThatHideEachOtherIsNeverAboveOne) {
+  for (const double roughness : {0.05, 0.3, 1.0}) {
+    const Surface mirror = surface("ggx", {{"roughness", roughness}, {"refractive_index", 1e12}});
+    for (const double theta : {0.0, 30.0, 60.0, 85.0}) {
+      const double rho = rho_dh(mirror, degrees(theta), 1e-6).value;
+      EXPECT_LE(rho, 1.0) << roughness << " at " << theta;
+      EXPECT_GE(rho, 0.5) << roughness << " at " << theta;  // the first bounce alone
+    }
+  }
+}
+
 TEST(RhoDh, IsNeverClippedWhereAModelBreaksEnergy) {
   // Facets that mirror all: more comes out than goes in unless they hide each other.
   const auto furnace = [](std::string_view model, Angle theta) {
