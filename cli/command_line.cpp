@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "cli/invocation.h"
+#include "protocol/api/analysis.h"
 
 namespace gonio::cli {
 namespace {
@@ -186,14 +187,39 @@ class CommandLine {
   void add_data() {
     CLI::App& data = group("data", "results");
     CLI::App& exported = scan_leaf(data, "export", "BRDF with uncertainty, as a file", Verb::DataExport);
-    exported.add_option("--format", export_format_, "csv")->check(CLI::IsMember({"csv"}));
+    std::vector<std::string> formats{"csv"};
+    formats.insert(formats.end(), api::kExportFormats.begin(), api::kExportFormats.end());
+    exported.add_option("--format", wanted_.export_format, "csv: every point with its status; csv+json loses nothing")
+        ->check(CLI::IsMember(formats));
     wanted_.file = "-";
     exported.add_option("-o,--file", wanted_.file, "where to; - is standard output");
+    CLI::App& trace = scan_leaf(data, "trace", "a value down to its raw readings", Verb::DataTrace);
+    trace.add_option("point", wanted_.point, "the point's number")->required()->check(CLI::NonNegativeNumber);
+    CLI::App& plot = *leaf(data, "plot", "lobe, polar map, cuts; of a scan its budget and course too", Verb::DataPlot);
+    plot.add_option("input", wanted_.input, "a scan's number, or a BRDF file")->required();
+    plot.add_option("-o,--file", wanted_.result, "what the pictures' names begin with");
+    CLI::App& report = scan_leaf(data, "report", "one page that a lab signs", Verb::DataReport);
+    report.add_option("-o,--file", wanted_.result, "where to (scan-N-report.html)");
+    scan_leaf(data, "describe", "reflectances, and how far readings are from their neighbours", Verb::DataDescribe);
+    add_data_files(data, formats);
+    leaf(data, "jobs", "what the worker program did and does", Verb::DataJobs);
+    CLI::App& cancel = *leaf(data, "cancel", "end a job of the worker program", Verb::DataCancel);
+    cancel.add_option("job", wanted_.job, "the job's number")->required()->check(CLI::PositiveNumber);
+  }
+
+  // Without a daemon, by the gonio-analyse beside this program.
+  void add_data_files(CLI::App& data, std::vector<std::string> formats) {
+    formats.erase(formats.begin());
+    CLI::App& convert = *leaf(data, "convert", "a BRDF file into another format", Verb::DataConvert);
+    convert.add_option("input", wanted_.input, "a file of any format that is known")->required();
+    convert.add_option("--format", wanted_.export_format, "the new one")->required()->check(CLI::IsMember(formats));
+    convert.add_option("-o,--file", wanted_.result, "where to; the format gives the ending");
+    CLI::App& import = *leaf(data, "import", "what is in a BRDF file, and what it integrates to", Verb::DataImport);
+    import.add_option("input", wanted_.input, "a file of any format that is known")->required();
   }
 
   Invocation& wanted_;
   CLI::App app_{"gonioctl asks goniod, the daemon of a gonioreflectometer.", "gonioctl"};
-  std::string export_format_ = "csv";
 };
 
 }  // namespace

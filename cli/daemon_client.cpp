@@ -23,7 +23,8 @@ std::string path_of(api::RouteId id, std::int64_t scan, const std::string& query
 
 std::chrono::seconds patience(api::RouteId id) {
   if (id == api::RouteId::Stop) return kStopPatience;
-  const bool waits = id == api::RouteId::StageMove || id == api::RouteId::StageHome || id == api::RouteId::ScanExport;
+  const bool waits = id == api::RouteId::StageMove || id == api::RouteId::StageHome || id == api::RouteId::ScanExport ||
+                     id == api::RouteId::AnalysisFile;
   return waits ? kForever : kPatience;
 }
 

@@ -36,6 +36,14 @@ enum class Verb : std::uint8_t {
   ScanRepeat,
   Replay,
   DataExport,
+  DataTrace,
+  DataPlot,
+  DataReport,
+  DataDescribe,
+  DataConvert,
+  DataImport,
+  DataJobs,
+  DataCancel,
   ReferenceList,
   Instrument,
   Doctor,
@@ -57,6 +65,11 @@ struct Invocation {
   std::int64_t other_scan = 0;  ///< to compare with
   ReplayLine replay;
   std::string file;  ///< a plan, or where an export goes ("-": standard output)
+  std::string export_format = "csv";
+  std::string input;       ///< a BRDF file
+  std::string result;      ///< where results go; empty: here, under their own names
+  std::int64_t job = 0;    ///< of the worker program
+  std::int64_t point = 0;  ///< to be traced
   bool watch = false;
   bool now = false;        ///< pause
   bool follow = false;     ///< events

@@ -3,9 +3,12 @@
 #include <sys/random.h>
 
 #include <array>
+#include <charconv>
 #include <ostream>
 
 #include "base/clock.h"
+#include "cli/analysis_job.h"
+#include "cli/analysis_program.h"
 #include "cli/calibration_views.h"
 #include "cli/daemon_client.h"
 #include "cli/doctor/doctor.h"
@@ -103,6 +106,22 @@ class Runner {
         return failure(become_replay(wanted_.replay));
       case Verb::DataExport:
         return export_data();
+      case Verb::DataTrace:
+        return take_job({.kind = "trace", .scan = wanted_.scan, .point = wanted_.point}, "-");
+      case Verb::DataPlot:
+        return plot_data();
+      case Verb::DataReport:
+        return take_job({.kind = "report", .scan = wanted_.scan}, wanted_.result);
+      case Verb::DataDescribe:
+        return take_job({.kind = "describe", .scan = wanted_.scan}, "");
+      case Verb::DataConvert:
+        return failure(become_analysis(file_job("export")));
+      case Verb::DataImport:
+        return failure(become_analysis(file_job("describe")));
+      case Verb::DataJobs:
+        return list_jobs();
+      case Verb::DataCancel:
+        return show(client_.post<api::AnalysisReport>(RouteId::AnalysisCancel, wanted_.job, "{}"));
       case Verb::ReferenceList:
         return list_references();
       case Verb::Instrument:
@@ -289,7 +308,50 @@ class Runner {
     return compare_scans(wanted_.scan, submitted->value.scan);
   }
 
+  Result<int> list_jobs() {
+    return show_list(
+        client_.get<api::AnalysisList>(RouteId::AnalysisList),
+        [](const api::AnalysisList& list) -> const auto& { return list.jobs; });
+  }
+
+  FileJob file_job(const std::string& kind) const {
+    return {.kind = kind,
+            .file = wanted_.input,
+            .format = kind == "export" ? wanted_.export_format : "",
+            .output = wanted_.result,
+            .as_json = wanted_.format == Format::Json || wanted_.format == Format::Jsonl};
+  }
+
+  // Of a scan's number, or of a file.
+  Result<int> plot_data() {
+    std::int64_t scan = 0;
+    const std::string& text = wanted_.input;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
+    const bool is_number = error == std::errc() && end == text.data() + text.size() && scan > 0;
+    if (!is_number) return failure(become_analysis(file_job("plot")));
+    return take_job({.kind = "plot", .scan = scan}, wanted_.result);
+  }
+
+  // A job of the worker program: done, fetched, told of.
+  Result<int> take_job(const api::AnalysisRequest& request, const std::string& output) {
+    const Result<api::AnalysisReport> job = run_analysis(client_, request, world_);
+    if (!job) return failure(job.error());
+    const Result<std::vector<std::string>> written = take_files(client_, *job, output, world_);
+    if (!written) return failure(written.error());
+    if (wanted_.format == Format::Json || wanted_.format == Format::Jsonl) {
+      world_.out << api::to_json(*job) << '\n';
+    } else {
+      tell(*job, *written, world_);
+    }
+    return 0;
+  }
+
   Result<int> export_data() {
+    if (wanted_.export_format != "csv") {
+      // Files that come in twos, or in binary, have names of their own rather than a terminal.
+      return take_job({.kind = "export", .scan = wanted_.scan, .format = wanted_.export_format},
+                      wanted_.file == "-" && world_.out_is_terminal ? "" : wanted_.file);
+    }
     const Result<std::string> csv = client_.text(RouteId::ScanExport, wanted_.scan, "format=csv");
     if (!csv) return failure(csv.error());
     if (wanted_.file == "-") {

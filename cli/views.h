@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/output.h"
+#include "protocol/api/analysis.h"
 #include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
 
@@ -19,6 +20,8 @@ namespace gonio::cli {
 
 [[nodiscard]] Table view(const api::InstrumentReport& instrument);
 [[nodiscard]] Table view(const api::DetectorReading& reading);
+[[nodiscard]] Table view(const api::AnalysisReport& job);
+[[nodiscard]] Table view(const api::AnalysisList& jobs);
 
 /// "operator (local: lunch), lamp (detector: ...)"; empty without holds.
 [[nodiscard]] std::string holds_text(const api::ScanReport& scan);

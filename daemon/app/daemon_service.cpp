@@ -487,6 +487,12 @@ api::InstrumentReport DaemonService::instrument() {
   return instrument_report(parts_.instrument, parts_.store_file);
 }
 
+Result<api::AnalysisReport> DaemonService::start_analysis(const api::AnalysisRequest& request, const std::string& who) {
+  const Result<ScanInfo> scan = ask_store([&](StoreReader& store) { return store.scan(request.scan); });
+  if (!scan && request.scan > 0) return failure(scan.error());
+  return parts_.analyses.start(request, who);
+}
+
 Result<std::vector<api::Event>> DaemonService::events(std::int64_t after, int at_most) {
   const auto records = ask_store([&](StoreReader& store) { return store.events(after, at_most, 0); });
   if (!records) return failure(records.error());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "daemon/analysis/analysis_desk.h"
 #include "daemon/app/engine.h"
 #include "daemon/app/reference_shelf.h"
 #include "daemon/http/service.h"
@@ -22,6 +23,7 @@ class DaemonService final : public Service {
     const Instrument& instrument;
     const ReferenceShelf& shelf;
     const Clock& clock;
+    AnalysisDesk& analyses;
     std::string store_file;
     std::string version;
   };
@@ -64,6 +66,13 @@ class DaemonService final : public Service {
   Result<std::string> export_csv(std::int64_t scan) override;
   Result<api::ReferenceList> references() override;
   api::InstrumentReport instrument() override;
+  Result<api::AnalysisReport> start_analysis(const api::AnalysisRequest& request, const std::string& who) override;
+  api::AnalysisList analyses() override { return parts_.analyses.all(); }
+  Result<api::AnalysisReport> analysis(std::int64_t job) override { return parts_.analyses.one(job); }
+  Result<std::string> analysis_file(std::int64_t job, const std::string& name) override {
+    return parts_.analyses.file(job, name);
+  }
+  Result<api::AnalysisReport> cancel_analysis(std::int64_t job) override { return parts_.analyses.cancel(job); }
   Result<std::vector<api::Event>> events(std::int64_t after, int at_most) override;
 
  private:

@@ -2,6 +2,8 @@
 #include <csignal>
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -10,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/analysis/analysis_desk.h"
 #include "daemon/app/daemon_service.h"
 #include "daemon/app/devices.h"
 #include "daemon/app/engine.h"
@@ -78,6 +81,12 @@ Result<void> write_ready_file(const std::string& path, const std::string& url) {
                   .where = InputLocation{path, 0, "--ready-file"}});
 }
 
+// Beside this program, as goniosim is.
+std::string analysis_program() {
+  if (const char* named = std::getenv("GONIO_ANALYSE")) return named;
+  return (std::filesystem::path(own_path()).parent_path() / "gonio-analyse").string();
+}
+
 void log_references(const ReferenceShelf& shelf) {
   for (const ShelfEntry& entry : shelf.all()) {
     if (entry.standard) {
@@ -134,10 +143,14 @@ Result<void> serve(const Options& options, const sigset_t& signals) {
   Devices devices(*instrument, deck);
   Engine engine({.instrument = *instrument, .store_file = options.store_file, .tape = deck.sink()}, devices.all(),
                 **writer, clock, [&publisher](const EventRecord& event) { publisher(event); });
+  AnalysisDesk analyses(
+      {.program = analysis_program(), .store_file = options.store_file, .folder = options.store_file + ".analysis"},
+      clock);
   DaemonService service({.engine = engine,
                          .instrument = *instrument,
                          .shelf = shelf,
                          .clock = clock,
+                         .analyses = analyses,
                          .store_file = options.store_file,
                          .version = GONIO_VERSION});
   const Result<api::StatusReport> status = service.status();

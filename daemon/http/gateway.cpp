@@ -41,7 +41,7 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
 bool is_slow(RouteId id) {
   return id == RouteId::PlanCheck || id == RouteId::ScanSubmit || id == RouteId::ScanBrdf ||
          id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing ||
-         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart;
+         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::AnalysisFile;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
@@ -170,6 +170,16 @@ void Gateway::run_command(const HttpRequest& request, const RouteMatch& match,
     }
     case RouteId::ScanCompleteMissing:
       return service_.complete_missing(match.scan, request.who, reply);
+    case RouteId::AnalysisStart: {
+      const auto job = api::request_from_json<api::AnalysisRequest>(request.body);
+      if (!job) return refused(job.error());
+      return exchange->answer(json_response(service_.start_analysis(*job, request.who)));
+    }
+    case RouteId::AnalysisCancel: {
+      const auto words = api::request_from_json<api::NoWords>(request.body);
+      if (!words) return refused(words.error());
+      return exchange->answer(json_response(service_.cancel_analysis(match.scan)));
+    }
     default: {
       const Result<Words> words = scan_words(match.route->id, request.body);
       if (!words) return refused(words.error());
@@ -222,6 +232,15 @@ HttpResponse Gateway::read(const HttpRequest& request, const RouteMatch& match) 
     case RouteId::CalibrationChart: {
       const auto standard = request.query.find("standard");
       return json_response(service_.calibration_chart(standard == request.query.end() ? "" : standard->second));
+    }
+    case RouteId::AnalysisList:
+      return success(api::kJson, api::to_json(service_.analyses()));
+    case RouteId::AnalysisOne:
+      return json_response(service_.analysis(match.scan));
+    case RouteId::AnalysisFile: {
+      const auto name = request.query.find("name");
+      Result<std::string> bytes = service_.analysis_file(match.scan, name == request.query.end() ? "" : name->second);
+      return bytes ? success(api::kBytes, std::move(bytes).value()) : problem(bytes.error());
     }
     case RouteId::Instrument:
       return success(api::kJson, api::to_json(service_.instrument()));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "protocol/api/analysis.h"
 #include "protocol/api/calibration_reports.h"
 #include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
@@ -81,6 +82,16 @@ class Service {
   [[nodiscard]] virtual Result<api::CalibrationReport> calibration(std::int64_t version) = 0;
   /// Errors: NotFound (no run of such a check standard).
   [[nodiscard]] virtual Result<api::ChartReport> calibration_chart(const std::string& standard) = 0;
+  /// Queues a job for the worker program. Errors: InvalidInput, NotFound, Busy.
+  [[nodiscard]] virtual Result<api::AnalysisReport> start_analysis(const api::AnalysisRequest& request,
+                                                                   const std::string& who) = 0;
+  [[nodiscard]] virtual api::AnalysisList analyses() = 0;
+  /// Errors of these: NotFound.
+  [[nodiscard]] virtual Result<api::AnalysisReport> analysis(std::int64_t job) = 0;
+  /// What a job wrote, by the name that its report has. Errors: NotFound, WrongState (it is not done).
+  [[nodiscard]] virtual Result<std::string> analysis_file(std::int64_t job, const std::string& name) = 0;
+  /// Ends a job; one that is over stays as it is.
+  [[nodiscard]] virtual Result<api::AnalysisReport> cancel_analysis(std::int64_t job) = 0;
   /// Committed events with number > `after`, in order.
   [[nodiscard]] virtual Result<std::vector<api::Event>> events(std::int64_t after, int at_most) = 0;
 };

@@ -131,6 +131,14 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ResumeRequest, hold)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ChangeRequest, target_snr, max_time_s, order, seed, priority, start_utc,
                                                 reason)
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisRequest, kind, scan, format, point, deadline_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisLoss, kind, values, what)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisFile, name, bytes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisFact, name, value, expanded_u, unit, note)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisReport, id, kind, scan, state, who, progress, doing,
+                                                submitted_utc, ended_utc, error, files, losses, facts, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisList, jobs)
+
 void to_json(json& j, const NoWords&) {
   j = json::object();
 }
@@ -258,6 +266,9 @@ GONIO_REPORT(Event);
 GONIO_REPORT(StopReport);
 GONIO_REPORT(CommandReport);
 GONIO_REPORT(DetectorReading);
+GONIO_REPORT(AnalysisReport);
+GONIO_REPORT(AnalysisList);
+GONIO_REQUEST(AnalysisRequest);
 GONIO_REQUEST(PlanSubmission);
 GONIO_REQUEST(MoveRequest);
 GONIO_REQUEST(DetectorReadRequest);

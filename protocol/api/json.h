@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "protocol/api/analysis.h"
 #include "protocol/api/calibration_reports.h"
 #include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"

@@ -47,9 +47,14 @@ enum class RouteId : std::uint8_t {
   CalibrationUse,
   CalibrationChart,
   ScanRecompute,
+  AnalysisStart,
+  AnalysisList,
+  AnalysisOne,
+  AnalysisFile,
+  AnalysisCancel,
 };
 
-/// One way into the daemon. `{scan}` in a path stands for a scan's number.
+/// One way into the daemon. A name in braces, as `{scan}`, stands for a number.
 struct Route {
   RouteId id;
   Method method;
@@ -66,6 +71,7 @@ inline constexpr std::string_view kProblemJson = "application/problem+json";
 inline constexpr std::string_view kCsv = "text/csv";
 inline constexpr std::string_view kEventStream = "text/event-stream";
 inline constexpr std::string_view kMetricsText = "text/plain";
+inline constexpr std::string_view kBytes = "application/octet-stream";
 inline constexpr std::size_t kSmallBody = 4096;
 inline constexpr std::size_t kPlanBody = 8U << 20U;
 
@@ -113,6 +119,12 @@ inline constexpr std::array kRoutes{
           kJson, true, kSmallBody},
     Route{RouteId::CalibrationChart, Method::Get, "/api/v1/calibration-chart", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::ScanRecompute, Method::Post, "/api/v1/scans/{scan}/recompute", Permission::Operator, kJson, kJson,
+          true, kSmallBody},
+    Route{RouteId::AnalysisStart, Method::Post, "/api/v1/analysis", Permission::Viewer, kJson, kJson, true, kSmallBody},
+    Route{RouteId::AnalysisList, Method::Get, "/api/v1/analysis", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::AnalysisOne, Method::Get, "/api/v1/analysis/{job}", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::AnalysisFile, Method::Get, "/api/v1/analysis/{job}/file", Permission::Viewer, "", kBytes, false, 0},
+    Route{RouteId::AnalysisCancel, Method::Post, "/api/v1/analysis/{job}/cancel", Permission::Viewer, kJson, kJson,
           true, kSmallBody},
 };
 

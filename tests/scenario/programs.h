@@ -8,6 +8,7 @@ namespace gonio::test {
 inline constexpr const char* kGoniosim = GONIO_GONIOSIM;
 inline constexpr const char* kGoniod = GONIO_GONIOD;
 inline constexpr const char* kGonioctl = GONIO_GONIOCTL;
+inline constexpr const char* kGonioAnalyse = GONIO_ANALYSE;
 inline constexpr const char* kScenes = GONIO_SCENES;
 
 // Bounds against hanging, far above what a slow, busy machine needs; never a speed to be met.

@@ -149,6 +149,21 @@ class FakeService final : public daemon::Service {
             .monitor_high = 5.0,
             .store_free_bytes = free_bytes};
   }
+  Result<api::AnalysisReport> start_analysis(const api::AnalysisRequest& request, const std::string& who) override {
+    note("analysis " + api::to_json(request) + " " + who);
+    return analysis_report("queued");
+  }
+  api::AnalysisList analyses() override { return {{analysis_report("done")}}; }
+  Result<api::AnalysisReport> analysis(std::int64_t job) override {
+    if (job != 5)
+      return failure({.code = ErrorCode::NotFound, .device = "analysis", .seen = "no job " + std::to_string(job)});
+    return analysis_report(analysis_state);
+  }
+  Result<std::string> analysis_file(std::int64_t, const std::string& name) override { return "bytes of " + name; }
+  Result<api::AnalysisReport> cancel_analysis(std::int64_t job) override {
+    note("cancel analysis " + std::to_string(job));
+    return analysis_report("cancelled");
+  }
   Result<std::vector<api::Event>> events(std::int64_t after, int at_most) override {
     const std::lock_guard lock(mutex_);
     std::vector<api::Event> found;
@@ -182,8 +197,17 @@ class FakeService final : public daemon::Service {
   std::atomic<bool> hold_replies{false};  ///< moves wait for answer_held
   std::string scan_state = "running";     ///< set before the server starts
   std::int64_t free_bytes = 1'000'000'000'000;
+  std::string analysis_state = "done";  ///< set before it is asked for
 
  private:
+  static api::AnalysisReport analysis_report(const std::string& state) {
+    api::AnalysisReport report{.id = 5, .kind = "export", .scan = 3, .state = state, .progress = 0.5, .doing = "write"};
+    if (state == "failed") report.error = Error{.code = ErrorCode::Internal, .device = "gonio-analyse", .seen = "gone"};
+    if (state != "done") return report;
+    report.files = {{.name = "scan-3.csv", .bytes = 22}, {.name = "scan-3.json", .bytes = 23}};
+    report.losses = {{.kind = "sign", .values = 2, .what = "negative values became 0"}};
+    return report;
+  }
   static api::StageReport stage_report() {
     return {.homed = true,
             .source_shutter = "open",

@@ -122,6 +122,9 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<UseCalibrationRequest>(document, "UseCalibrationRequest");
   expect_schema<RecomputeRequest>(document, "RecomputeRequest");
   expect_schema<NoWords>(document, "NoWords");
+  expect_schema<AnalysisRequest>(document, "AnalysisRequest");
+  expect_schema<AnalysisReport>(document, "AnalysisReport");
+  expect_schema<AnalysisList>(document, "AnalysisList");
 }
 
 }  // namespace

@@ -1,0 +1,155 @@
+// The report's sections on where it comes from: sample, calibration chain, environment, people, hashes.
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "calibration/reference_standard.h"
+#include "daemon/analysis/html.h"
+#include "daemon/analysis/report.h"
+#include "daemon/config/instrument.h"
+
+namespace gonio::analysis {
+namespace {
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+using daemon::HistoryReading;
+
+constexpr std::size_t kStepsShown = 80;
+
+std::string list_text(const std::set<double>& values, const char* unit) {
+  constexpr std::size_t kMost = 24;
+  std::string text;
+  std::size_t n = 0;
+  for (const double value : values) {
+    if (n++ == kMost) return text + fmt::format(", ... ({} in all) {}", values.size(), unit);
+    text += (text.empty() ? "" : ", ") + fmt::format("{:.5g}", value);
+  }
+  return text + " " + unit;
+}
+
+std::string code(const std::string& text) {
+  return "<code class=\"hash\">" + html_text(text) + "</code>";
+}
+
+void add_certificate(Facts& facts, const ReportParts& parts) {
+  const auto standard = calibration::ReferenceStandard::parse(parts.scan.texts.reference, "the scan's reference");
+  if (!standard) {
+    facts.emplace_back("certificate", html_text(describe(standard.error())));
+    return;
+  }
+  const calibration::Certificate& certificate = standard->certificate();
+  facts.emplace_back("standard", html_text(standard->serial() + ", " + standard->material()));
+  facts.emplace_back("certificate",
+                     html_text(fmt::format("of {}, holds to {}; stated with k = {:.3g}", certificate.date,
+                                           certificate.expires, certificate.coverage_factor)));
+  for (const formats::Channel& channel : parts.brdf.channels) {
+    const auto rho = standard->reflectance(nanometres(channel.wavelength_nm));
+    if (!rho) continue;
+    facts.emplace_back(fmt::format("certified reflectance at {:.6g} nm", channel.wavelength_nm),
+                       fmt::format("{:.5g} ± {:.2g} (k = 2)", rho->value, 2.0 * rho->u));
+  }
+}
+
+template <class Value>
+std::string range_text(const std::vector<HistoryReading>& readings, Value value, const char* unit) {
+  const auto [least, most] = std::ranges::minmax_element(readings, {}, value);
+  return fmt::format("{:.4g} to {:.4g} {}", value(*least), value(*most), unit);
+}
+
+}  // namespace
+
+std::string sample_section(const ReportParts& parts) {
+  const daemon::ScanInfo& info = parts.scan.info;
+  std::set<double> theta_i;
+  std::set<double> phi_i;
+  std::set<double> theta_r;
+  std::set<double> phi_r;
+  std::set<double> wavelengths;
+  for (const daemon::PointInfo& point : parts.scan.points) {
+    theta_i.insert(in_degrees(point.point.geometry.theta_i));
+    phi_i.insert(in_degrees(point.point.geometry.phi_i));
+    theta_r.insert(in_degrees(point.point.geometry.theta_r));
+    phi_r.insert(in_degrees(point.point.geometry.phi_r));
+    wavelengths.insert(in_nanometres(point.point.wavelength));
+  }
+  Facts facts{{"sample", html_text(info.sample)},
+              {"campaign", info.campaign.empty() ? "none" : html_text(info.campaign)},
+              {"isotropic", info.isotropic ? "declared so: only φ<sub>r</sub> - φ<sub>i</sub> counts" : "no"},
+              {"θ<sub>i</sub>", list_text(theta_i, "°")},
+              {"φ<sub>i</sub>", list_text(phi_i, "°")},
+              {"θ<sub>r</sub>", list_text(theta_r, "°")},
+              {"φ<sub>r</sub>", list_text(phi_r, "°")},
+              {"wavelength", list_text(wavelengths, "nm")}};
+  return "<h2>Sample and geometry</h2>\n<p>Directions point away from the surface: i to the source, r to the detector; "
+         "θ "
+         "from the normal, φ counter-clockwise seen from above. Retro-reflection: θ<sub>r</sub> = θ<sub>i</sub>, "
+         "φ<sub>r</sub> = φ<sub>i</sub>.</p>\n" +
+         html_facts(facts) + "<pre>" + html_text(parts.scan.texts.plan) + "</pre>\n";
+}
+
+std::string chain_section(const ReportParts& parts) {
+  Facts facts;
+  add_certificate(facts, parts);
+  if (const auto instrument = daemon::parse_instrument(parts.scan.texts.instrument, "instrument.toml")) {
+    facts.emplace_back("instrument", html_text(instrument->name));
+    facts.emplace_back("half cones",
+                       fmt::format("detector {:.3g}°, source {:.3g}°", in_degrees(instrument->cones.detector_half),
+                                   in_degrees(instrument->cones.source_half)));
+  }
+  facts.emplace_back("calibration", fmt::format("version {} ({})", parts.scan.brdf.calibration,
+                                                html_text(parts.scan.brdf.code_version)));
+  facts.emplace_back("its inputs", code(parts.scan.brdf.inputs_json));
+  facts.emplace_back("measurand",
+                     "f<sub>r</sub> at the reported directions and the wavelength's centroid, at zero aperture");
+  return "<h2>Calibration chain</h2>\n" + html_facts(facts);
+}
+
+std::string environment_section(const ReportParts& parts) {
+  const std::vector<HistoryReading>& readings = parts.history.readings;
+  if (readings.empty()) return "<h2>Environment</h2>\n<p>No reading.</p>\n";
+  const Facts facts{
+      {"lamp", range_text(
+                   readings, [](const HistoryReading& r) { return r.lamp_temperature_c; }, "°C")},
+      {"detector", range_text(
+                       readings, [](const HistoryReading& r) { return r.detector_temperature_c; }, "°C")},
+      {"room", range_text(
+                   readings, [](const HistoryReading& r) { return r.room_temperature_c; }, "°C")},
+      {"humidity", range_text(
+                       readings, [](const HistoryReading& r) { return r.humidity_percent; }, "%")},
+      {"lamp monitor", range_text(
+                           readings, [](const HistoryReading& r) { return r.monitor_mean; }, "(its own unit)")},
+      {"readings",
+       fmt::format("{}, {} to {}", readings.size(), iso8601(readings.front().at), iso8601(readings.back().at))}};
+  return "<h2>Environment</h2>\n" + html_facts(facts);
+}
+
+std::string people_section(const ReportParts& parts) {
+  std::vector<std::vector<std::string>> rows;
+  for (const daemon::HistoryStep& step : parts.history.steps) {
+    if (rows.size() == kStepsShown) break;
+    rows.push_back({iso8601(step.at), html_text(step.kind), html_text(step.who), code(step.json)});
+  }
+  const daemon::ScanInfo& info = parts.scan.info;
+  std::string html =
+      "<h2>Who and when</h2>\n" +
+      html_facts({{"submitted", iso8601(info.submitted) + " by " + html_text(info.who)},
+                  {"last change", iso8601(info.changed) + ": " + std::string(daemon::scan_state_name(info.state)) +
+                                      (info.outcome.empty() ? "" : ", " + html_text(info.outcome))}});
+  if (!rows.empty()) html += html_table({"when", "what", "who", ""}, rows);
+  if (parts.history.steps.size() > kStepsShown) html += fmt::format("<p>The first {} steps.</p>\n", kStepsShown);
+  return html + "<p><code>gonioctl events</code></p>\n";
+}
+
+std::string origins_section(const ReportParts& parts) {
+  const daemon::ScanTexts& texts = parts.scan.texts;
+  return "<h2>Software and configuration</h2>\n" +
+         html_facts({{"report by", "goniod " GONIO_VERSION},
+                     {"calibration code", html_text(parts.scan.brdf.code_version)},
+                     {"plan", html_text(texts.plan_file) + ", sha256 " + code(texts.plan_sha256)},
+                     {"instrument", "sha256 " + code(texts.instrument_sha256) + ", without addresses " +
+                                        code(parts.scan.info.instrument_hash)},
+                     {"standard's file", "sha256 " + code(texts.reference_sha256)}});
+}
+
+}  // namespace gonio::analysis

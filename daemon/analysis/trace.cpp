@@ -1,0 +1,105 @@
+#include "daemon/analysis/trace.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "daemon/app/calibration_desk.h"
+
+namespace gonio::analysis {
+namespace {
+
+using daemon::BrdfRow;
+
+std::string geometry_text(const Geometry& g) {
+  return fmt::format("theta_i {:.6g}, phi_i {:.6g}, theta_r {:.6g}, phi_r {:.6g} deg", in_degrees(g.theta_i),
+                     in_degrees(g.phi_i), in_degrees(g.theta_r), in_degrees(g.phi_r));
+}
+
+std::string budget_lines(const BrdfRow& row, const std::vector<std::string>& names) {
+  std::string text = fmt::format("    random                                    {:.4g} sr^-1\n", row.u_random_per_sr);
+  for (std::size_t i = 0; i + 1 < row.sensitivities_per_sr.size(); i += 2) {
+    const auto component = static_cast<std::size_t>(row.sensitivities_per_sr[i]);
+    text += fmt::format("    {:<40}  {:.4g} sr^-1\n", component < names.size() ? names[component] : "?",
+                        row.sensitivities_per_sr[i + 1]);
+  }
+  return text;
+}
+
+std::string recomputed_line(const BrdfRow& row, const daemon::NewBrdf& recomputed) {
+  const auto again = std::ranges::find(recomputed.rows, row.point, &BrdfRow::point);
+  if (again == recomputed.rows.end()) return "  computed anew from these readings: no value\n";
+  const bool same = again->value_per_sr == row.value_per_sr && again->u_random_per_sr == row.u_random_per_sr &&
+                    again->sensitivities_per_sr == row.sensitivities_per_sr;
+  return fmt::format("  computed anew from these readings: {:.17g} sr^-1, {}\n", again->value_per_sr,
+                     same ? "the same bits, U too" : "not the same");
+}
+
+std::string value_lines(const StoredScan& scan, const BrdfRow& row, const daemon::NewBrdf& recomputed) {
+  const daemon::StoredBudget budget = daemon::budget_of(row);
+  std::string text = fmt::format("value  {:.17g} sr^-1, u {:.4g}, k {:.4g}, U {:.4g} sr^-1\n", row.value_per_sr,
+                                 budget.u_per_sr, budget.k, budget.expanded_per_sr);
+  text += fmt::format("  at {}, as the encoders say\n", geometry_text(row.reported));
+  text += fmt::format("  calibration {} ({}), of {}\n", scan.brdf.calibration, scan.brdf.code_version,
+                      scan.brdf.inputs_json);
+  text += recomputed_line(row, recomputed);
+  text += "  budget, one standard deviation of each:\n" + budget_lines(row, scan.brdf.component_names);
+  return text;
+}
+
+std::string reading_line(const daemon::TracedReading& r) {
+  std::string text = fmt::format("    reading {} at {}: ", r.reading, r.utc);
+  if (r.power_w) {
+    text += fmt::format("{:.17g} W", *r.power_w);
+  } else {
+    text += fmt::format(
+        "mean {:.17g} DN, m2 {:.9g} DN^2, m3 {:.6g} DN^3, m4 {:.6g} DN^4 of {} pixels, {} saturated, "
+        "{:.9g} s, {:.3g} dB",
+        r.mean_dn, r.m2_dn2, r.m3_dn3, r.m4_dn4, r.pixels, r.saturated, r.exposure_s, r.gain_db);
+  }
+  text += fmt::format(", monitor {:.9g} +- {:.2g}", r.monitor_mean, r.monitor_se);
+  return text + (r.used ? "\n" : ", not used\n");
+}
+
+std::string attempt_lines(const daemon::TracedAttempt& a) {
+  std::string text = fmt::format("{} attempt {} (try {}, {}): {}", a.target, a.attempt, a.number, a.utc, a.outcome);
+  if (a.in_force) text += ", in force";
+  if (a.round > 1) text += fmt::format(", round {}", a.round);
+  if (!a.error.empty()) text += ", " + a.error;
+  text += '\n';
+  for (const daemon::TracedReading& reading : a.readings) text += reading_line(reading);
+  return text;
+}
+
+}  // namespace
+
+Result<std::string> trace_text(const StoredScan& scan, const daemon::PointTrace& trace, std::int32_t point,
+                               const daemon::NewBrdf& recomputed) {
+  const auto planned =
+      std::ranges::find(scan.points, point, [](const daemon::PointInfo& info) { return info.point.index; });
+  if (planned == scan.points.end()) {
+    return failure({.code = ErrorCode::NotFound,
+                    .device = "analysis",
+                    .tried = fmt::format("trace point {} of scan {}", point, scan.info.id),
+                    .seen = "the scan has no such point",
+                    .limit = fmt::format("0 to {}", std::ssize(scan.points) - 1)});
+  }
+  std::string text = fmt::format("scan {} \"{}\", sample \"{}\", point {}: {}, {:.6g} nm\n", scan.info.id,
+                                 scan.info.name, scan.info.sample, point, geometry_text(planned->point.geometry),
+                                 in_nanometres(planned->point.wavelength));
+  const auto row = std::ranges::find(scan.brdf.rows, point, &BrdfRow::point);
+  text += row == scan.brdf.rows.end()
+              ? std::string(planned->point.blocked ? "no value: in the detector's shadow\n" : "no value\n")
+              : value_lines(scan, *row, recomputed);
+  for (const daemon::TracedAttempt& attempt : trace.attempts) text += attempt_lines(attempt);
+  if (planned->reference_outcome.empty() && !planned->point.blocked) {
+    text += "the standard was not read for this point: a value without it rests on the same geometry's reading\n";
+  }
+  for (const daemon::TracedVisit& dark : trace.darks) {
+    text += fmt::format("{} visit {} ({}), beside these attempts\n", dark.kind, dark.visit, dark.utc);
+    for (const daemon::TracedReading& reading : dark.readings) text += reading_line(reading);
+  }
+  return text;
+}
+
+}  // namespace gonio::analysis

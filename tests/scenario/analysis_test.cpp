@@ -1,0 +1,152 @@
+// What a lab takes home, through the programs a user has; and that the worker program can die without a scan noticing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/scenario/bench.h"
+#include "tests/scenario/programs.h"
+
+namespace gonio::test {
+namespace {
+
+using testing::HasSubstr;
+
+// In place of gonio-analyse: while there is a file `stall`, it says its number and stays; else it is gonio-analyse.
+constexpr const char* kStallingWorker = R"(#!/bin/sh
+here=$(dirname "$0")
+if [ -e "$here/stall" ]; then
+  echo '{"state": "running", "progress": 0.4, "doing": "writing merl"}'
+  echo $$ > "$here/pid.part"; mv "$here/pid.part" "$here/pid"
+  exec tail -f /dev/null
+fi
+exec )";
+
+class Analysis : public testing::Test {
+ protected:
+  Analysis() : bench_(SceneOptions{}) {
+    const std::string worker = bench_.file("worker", kStallingWorker + std::string(kGonioAnalyse) + " \"$@\"\n");
+    std::filesystem::permissions(worker, std::filesystem::perms::owner_all);
+    setenv("GONIO_ANALYSE", worker.c_str(), 1);
+    bench_.bring_up_daemon();
+    unsetenv("GONIO_ANALYSE");
+  }
+  long measure() {
+    const long id = bench_.submit(plan_text({.theta_i_deg = "[0, 30]", .phi_r_deg = "[0, 60, 120, 180]"}));
+    bench_.wait_for_state(id, {"done"});
+    return id;
+  }
+  nlohmann::json start(const nlohmann::json& request) {
+    const HttpAnswer answer = bench_.daemon().post("analysis", request.dump());
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return nlohmann::json::parse(answer.body);
+  }
+  nlohmann::json wait_for_job(long job) {
+    nlohmann::json seen;
+    EXPECT_TRUE(eventually(
+        [&] {
+          seen = bench_.get("analysis/" + std::to_string(job));
+          return !seen.at("ended_utc").get<std::string>().empty();
+        },
+        kStepDeadline));
+    return seen;
+  }
+
+  Bench bench_;
+};
+
+TEST_F(Analysis, AKilledWorkerIsNamedAndItsScanGoesOn) {
+  const std::string stall = bench_.file("stall", "");
+  const long scan = bench_.submit(plan_text({.theta_i_deg = "[0, 20, 40]", .phi_r_deg = "[0, 45, 90, 135, 180]"}));
+  bench_.wait_for_state(scan, {"running"});
+  const long job = start({{"kind", "export"}, {"scan", scan}, {"format", "merl"}}).at("id").get<long>();
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(bench_.folder() + "/pid"); }, kStepDeadline));
+
+  ::kill(std::stoi(text_of(bench_.folder() + "/pid")), SIGKILL);
+  const nlohmann::json failed = wait_for_job(job);
+
+  EXPECT_EQ(failed.at("state"), "failed");
+  EXPECT_THAT(failed.at("error").at("seen").get<std::string>(), HasSubstr("signal 9"));
+  EXPECT_EQ(failed.at("error").at("tried"), "writing merl");
+  bench_.wait_for_state(scan, {"done"});
+  EXPECT_EQ(bench_.scan(scan).at("accepted"), bench_.scan(scan).at("items"));
+  std::filesystem::remove(stall);
+  const Finished again = bench_.gonioctl(
+      {"data", "export", std::to_string(scan), "--format", "bird", "-o", bench_.folder() + "/scan.brdf"});
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+}
+
+TEST_F(Analysis, EveryFormatIsTakenHomeWithWhatItLoses) {
+  const std::string scan = std::to_string(measure());
+  for (const char* format : {"csv+json", "bird", "astm", "zemax", "merl", "ssdd", "pab", "klems", "rgl", "nexus"}) {
+    SCOPED_TRACE(format);
+    const std::string folder = bench_.folder() + "/" + format;
+    std::filesystem::create_directory(folder);
+
+    const Finished made = bench_.gonioctl({"data", "export", scan, "--format", format, "-o", folder + "/wheat.out"});
+
+    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_THAT(made.errors, HasSubstr("written: " + folder));
+    long files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      files += entry.file_size() > 0 ? 1 : 0;
+      EXPECT_EQ(entry.path().string().find(".part"), std::string::npos);
+    }
+    EXPECT_GE(files, 1);
+    const bool is_lossless = std::string(format) == "csv+json" || std::string(format) == "nexus";
+    EXPECT_EQ(made.errors.find("not in the file: ") == std::string::npos, is_lossless || std::string(format) == "bird")
+        << made.errors;
+  }
+}
+
+TEST_F(Analysis, AReportStandsAloneAndItsCommandsLeadToRawReadings) {
+  const long id = measure();
+  const std::string scan = std::to_string(id);
+  const std::string page_file = bench_.folder() + "/report.html";
+
+  const Finished made = bench_.gonioctl({"data", "report", scan, "-o", page_file});
+
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  const std::string page = text_of(page_file);
+  EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_EQ(page.find("src="), std::string::npos) << "nothing is fetched from elsewhere";
+  for (const char* section : {"Result", "Sample and geometry", "Calibration chain", "Budget", "Self-checks",
+                              "Environment", "Gaps", "Who and when", "Software and configuration", "Pictures"}) {
+    EXPECT_THAT(page, HasSubstr("<h2>" + std::string(section)));
+  }
+  // The first command of the page, as its reader would give it.
+  const std::string lead = "gonioctl data trace " + scan + " ";
+  std::size_t at = page.find(lead);
+  while (at != std::string::npos && std::isdigit(static_cast<unsigned char>(page[at + lead.size()])) == 0) {
+    at = page.find(lead, at + 1);
+  }
+  ASSERT_NE(at, std::string::npos);
+  const std::string point = std::to_string(std::stoi(page.substr(at + lead.size())));
+  const Finished trace = bench_.gonioctl({"data", "trace", scan, point});
+  EXPECT_EQ(trace.exit_code, 0) << trace.errors;
+  EXPECT_THAT(trace.output, HasSubstr("the same bits, U too"));
+  for (const char* part :
+       {"sample attempt", "reference attempt", "in force", "reading ", "dark visit", "m2 ", "monitor "}) {
+    EXPECT_THAT(trace.output, HasSubstr(part));
+  }
+}
+
+TEST_F(Analysis, WhatIsNotThereIsSaid) {
+  const Finished no_scan = bench_.gonioctl({"data", "report", "77"});
+  EXPECT_EQ(no_scan.exit_code, 1);
+  EXPECT_THAT(no_scan.errors, HasSubstr("no scan of this number"));
+
+  const long scan = measure();
+  const Finished no_point = bench_.gonioctl({"data", "trace", std::to_string(scan), "7777"});
+  EXPECT_EQ(no_point.exit_code, 1);
+  EXPECT_THAT(no_point.errors, HasSubstr("no such point"));
+  EXPECT_EQ(bench_.gonioctl({"data", "export", std::to_string(scan), "--format", "exr"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace gonio::test
