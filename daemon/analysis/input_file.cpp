@@ -3,17 +3,17 @@
 #include <filesystem>
 #include <optional>
 
-#include "daemon/analysis/read_whole_file.h"
+#include "base/read_file.h"
 
 namespace gonio::analysis {
 
 Result<InputFile> read_input_file(const std::string& path) {
-  const Result<std::string> bytes = read_whole_file(path);
+  const Result<std::string> bytes = read_file(path);
   if (!bytes) return failure(bytes.error());
   std::optional<std::string> sidecar;
   const std::string beside = std::filesystem::path(path).replace_extension(".json").string();
   if (beside != path && formats::detect_format(*bytes) == formats::Format::Csv && std::filesystem::exists(beside)) {
-    Result<std::string> text = read_whole_file(beside);
+    Result<std::string> text = read_file(beside);
     if (!text) return failure(text.error());
     sidecar = std::move(*text);
   }

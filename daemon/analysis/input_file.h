@@ -14,7 +14,7 @@ struct InputFile {
   formats::MeasuredBrdf brdf;
 };
 
-/// Reads whatever `detect_format` finds; the JSON beside a CSV goes with it. Errors: FileUnreadable, TooLarge, those of
+/// Reads whatever `detect_format` finds; the JSON beside a CSV goes with it. Errors: FileUnreadable, those of
 /// `formats::read_brdf`.
 [[nodiscard]] Result<InputFile> read_input_file(const std::string& path);
 

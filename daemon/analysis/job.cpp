@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "base/read_file.h"
 #include "daemon/analysis/describe.h"
 #include "daemon/analysis/export_job.h"
 #include "daemon/analysis/gnuplot.h"
 #include "daemon/analysis/input_file.h"
 #include "daemon/analysis/plots.h"
-#include "daemon/analysis/read_whole_file.h"
 #include "daemon/analysis/report.h"
 #include "daemon/analysis/stored_scan.h"
 #include "daemon/analysis/trace.h"
@@ -133,7 +133,7 @@ Result<std::vector<ReportPicture>> drawn_for_page(const JobInput& input, const s
     const auto files = draw(folder, input.name, pictures[n]);
     if (!files) done = failure(files.error());
     if (!done) break;
-    Result<std::string> svg = read_whole_file(folder + "/" + input.name + "-" + pictures[n].name + ".svg");
+    Result<std::string> svg = read_file(folder + "/" + input.name + "-" + pictures[n].name + ".svg");
     if (!svg) done = failure(svg.error());
     if (svg) drawn.push_back({.caption = pictures[n].caption, .svg = std::move(*svg)});
   }
