@@ -47,8 +47,23 @@ struct Nodes {
   std::size_t size = 0;
 };
 
-// The nearest stops of a sorted line; of two as near, the one below. A point's own mirror image is left out: it says
-// that the line is even, and nothing of its slope.
+// A point's own mirror images: with another neighbour they say how the line bends, for it is even.
+void add_own_images(std::span<const LineStop> line, std::size_t own, Nodes& nodes) {
+  if (nodes.size < 2) return;
+  const auto add = [&](const LineStop& stop) {
+    if (stop.point != line[own].point || nodes.size == kNodesAtMost) return;
+    for (std::size_t n = 0; n < nodes.size; ++n) {
+      if (std::abs(stop.coordinate - nodes.stop[n]->coordinate) < kSamePlace) return;
+    }
+    nodes.stop[nodes.size++] = &stop;
+  };
+  const double x0 = line[own].coordinate;
+  for (std::size_t n = own; n-- > 0 && x0 - line[n].coordinate < kFarthest;) add(line[n]);
+  for (std::size_t n = own + 1; n < line.size() && line[n].coordinate - x0 < kFarthest; ++n) add(line[n]);
+}
+
+// The nearest stops of a sorted line; of two as near, the one below. A point's own mirror image comes last: alone it
+// says that the line is even, and nothing of its slope.
 Nodes nodes_about(std::span<const LineStop> line, std::size_t own) {
   Nodes nodes{.stop = {&line[own]}, .size = 1};
   std::size_t below = own;
@@ -69,6 +84,7 @@ Nodes nodes_about(std::span<const LineStop> line, std::size_t own) {
     (next->coordinate < x0 ? last_below : last_above) = next->coordinate;
     nodes.stop[nodes.size++] = next;
   }
+  add_own_images(line, own, nodes);
   return nodes;
 }
 

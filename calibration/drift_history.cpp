@@ -60,36 +60,102 @@ DriftHistory::DriftHistory(const ScanReadings& scan, const ReadingContext& conte
   find_wander();
 }
 
+// What the visit lies off the line between its neighbours, and the visits' own noise of that.
+DriftHistory::Off DriftHistory::off_line(std::size_t n) const {
+  const ReferenceVisit& a = visits_[n - 1];
+  const ReferenceVisit& b = visits_[n];
+  const ReferenceVisit& c = visits_[n + 1];
+  const double before = in_seconds(b.at - a.at);
+  const double after = in_seconds(c.at - b.at);
+  const double w = before / (before + after);
+  return {.r = b.level - (1.0 - w) * a.level - w * c.level,
+          .noise2 = b.u * b.u + (1.0 - w) * (1.0 - w) * a.u * a.u + w * w * c.u * c.u,
+          .bridge_s = before * after / (before + after)};
+}
+
 void DriftHistory::find_wander() {
   constexpr std::size_t kFewest = 4;  // from a single inner visit nothing is known
   if (visits_.size() < kFewest) return;
-  double sum = 0.0;
-  for (std::size_t n = 1; n + 1 < visits_.size(); ++n) {
-    const ReferenceVisit& a = visits_[n - 1];
-    const ReferenceVisit& b = visits_[n];
-    const ReferenceVisit& c = visits_[n + 1];
-    const double before = in_seconds(b.at - a.at);
-    const double after = in_seconds(c.at - b.at);
-    if (!(before > 0.0) || !(after > 0.0)) return;
-    const double w = before / (before + after);
-    const double off = b.level - (1.0 - w) * a.level - w * c.level;
-    const double noise2 = b.u * b.u + (1.0 - w) * (1.0 - w) * a.u * a.u + w * w * c.u * c.u;
-    sum += (off * off - noise2) * (before + after) / (before * after);
+  for (std::size_t n = 1; n < visits_.size(); ++n) {
+    if (!(visits_[n].at > visits_[n - 1].at)) return;
   }
-  wander_dof_ = static_cast<double>(visits_.size() - 2);
-  wander_rate_ = std::max(0.0, sum / wander_dof_);
+  std::vector<Off> offs(visits_.size());  // of the first and the last: 0
+  for (std::size_t n = 1; n + 1 < visits_.size(); ++n) offs[n] = off_line(n);
+  std::vector<double> steps(visits_.size() - 1, 0.0);
+  while (take_out_step(offs, steps)) continue;
+  double sum = 0.0;
+  for (std::size_t n = 1; n + 1 < offs.size(); ++n) {
+    if (offs[n].is_taken_out) continue;
+    sum += (offs[n].r * offs[n].r - offs[n].noise2) / offs[n].bridge_s;
+    wander_dof_ += 1.0;
+  }
+  const double rate = wander_dof_ > 0.0 ? std::max(0.0, sum / wander_dof_) : 0.0;
+  for (std::size_t n = 0; n + 1 < visits_.size(); ++n) {
+    wanders_.push_back({.usual = std::sqrt(rate * in_seconds(visits_[n + 1].at - visits_[n].at)), .step = steps[n]});
+  }
 }
 
-DriftLevel DriftHistory::between(const ReferenceVisit& a, const ReferenceVisit& b) const {
+// The largest step that stands clear of all the rest: its size is kept for its interval, its visits no longer count.
+bool DriftHistory::take_out_step(std::vector<Off>& offs, std::vector<double>& steps) const {
+  constexpr double kClear = 16.0;  // four standard deviations, squared
+  std::size_t largest = 0;
+  double size = 0.0;
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    const double here = steps[n] == 0.0 ? step_within(offs, n) : 0.0;
+    if (here > size) {
+      size = here;
+      largest = n;
+    }
+  }
+  if (size == 0.0) return false;
+  double rest = 0.0;
+  double count = 0.0;
+  for (std::size_t n = 1; n + 1 < offs.size(); ++n) {
+    if (offs[n].is_taken_out || n == largest || n == largest + 1) continue;
+    rest += std::max(offs[n].r * offs[n].r, offs[n].noise2) / offs[n].bridge_s;
+    count += 1.0;
+  }
+  const double seconds = in_seconds(visits_[largest + 1].at - visits_[largest].at);
+  if (count == 0.0 || size * size / seconds < kClear * rest / count) return false;
+  steps[largest] = size;
+  for (const std::size_t n : {largest, largest + 1}) {
+    if (n > 0 && n + 1 < offs.size()) offs[n].is_taken_out = true;
+  }
+  return true;
+}
+
+// A step within interval n throws the visit before it off to one side and the one after it to the other, each by its
+// part; within the first or last interval there is one such visit only.
+double DriftHistory::step_within(const std::vector<Off>& offs, std::size_t n) const {
+  if (offs[n].is_taken_out || offs[n + 1].is_taken_out) return 0.0;
+  const bool is_first = n == 0;
+  const bool is_last = n + 2 == visits_.size();
+  const Off& before = offs[is_first ? 1 : n];
+  const Off& after = offs[is_last ? n : n + 1];
+  double size = 0.0;
+  if (is_first || is_last) {
+    const Off& own = is_first ? before : after;
+    const Off& next = offs[is_first ? 2 : n - 1];
+    size = std::max(0.0, std::abs(own.r) - (own.r * next.r < 0.0 ? std::abs(next.r) : 0.0));
+  } else if (before.r * after.r < 0.0) {
+    size = std::min(std::abs(before.r), std::abs(after.r));
+  }
+  constexpr double kPart = 2.0;  // of a step between visits at even distances, half
+  return kPart * std::sqrt(std::max(0.0, size * size - std::max(before.noise2, after.noise2)));
+}
+
+DriftLevel DriftHistory::between(std::size_t n) const {
+  const ReferenceVisit& a = visits_[n];
+  const ReferenceVisit& b = visits_[n + 1];
   constexpr double kCertain = 3.0;
   const double change = b.level - a.level;
   const double u = std::hypot(a.u, b.u);
   DriftLevel found{.change = std::sqrt(std::max(0.0, change * change - u * u)),
                    .is_large = limit_ && std::abs(change) > std::max(*limit_ * a.level, kCertain * u)};
   found.wander = found.change;
-  if (wander_rate_) {
-    found.wander = std::sqrt(*wander_rate_ * in_seconds(b.at - a.at));
-    found.wander_dof = wander_dof_;
+  if (!wanders_.empty()) {
+    found.wander = std::max(wanders_[n].usual, wanders_[n].step);
+    if (wanders_[n].usual > wanders_[n].step) found.wander_dof = wander_dof_;
   }
   return found;
 }
@@ -101,7 +167,7 @@ std::optional<DriftLevel> DriftHistory::at(Instant when) const {
   const bool is_late = next == visits_.end();
   const ReferenceVisit& a = is_early ? visits_.front() : *(is_late ? next - 2 : next - 1);
   const ReferenceVisit& b = is_early ? visits_[1] : *(is_late ? next - 1 : next);
-  DriftLevel found = between(a, b);
+  DriftLevel found = between(static_cast<std::size_t>(&a - visits_.data()));
   const double w = in_seconds(when - a.at) / in_seconds(b.at - a.at);
   if (is_early || is_late) {
     found.level = is_early ? a.level : b.level;

@@ -44,8 +44,10 @@ struct DriftLevel {
 /// visits found it. Visits at another point than the first are left out. Immutable; threads: any.
 /// What no line follows: each inner visit lies off the line between its neighbours by r, of variance s dt1 dt2 / (dt1 +
 /// dt2) for a random walk or for steps at random moments, and by nothing for a steady drift. The mean of (r^2 - the
-/// visits' own noise) (dt1 + dt2) / (dt1 dt2) over the n - 2 inner visits is s, with as many degrees of freedom; the
-/// bridge over the part p of an interval T then has the variance s T p (1 - p) (Brownian bridge).
+/// visits' own noise) (dt1 + dt2) / (dt1 dt2) over the inner visits is s, with as many degrees of freedom; the bridge
+/// over the part p of an interval T then has the variance s T p (1 - p) (Brownian bridge). A single large step throws
+/// the visits on both sides of it off to opposite sides: where that stands clear of the rest by four standard
+/// deviations, its interval alone has it, as a step at an unknown moment, and its visits do not count for s.
 class DriftHistory {
  public:
   DriftHistory(const ScanReadings& scan, const ReadingContext& context, const InstrumentModel& instrument);
@@ -57,12 +59,27 @@ class DriftHistory {
   [[nodiscard]] const std::vector<ReferenceVisit>& visits() const { return visits_; }
 
  private:
-  [[nodiscard]] DriftLevel between(const ReferenceVisit& a, const ReferenceVisit& b) const;
+  /// A visit beside the line between its neighbours.
+  struct Off {
+    double r = 0.0;
+    double noise2 = 0.0;
+    double bridge_s = 0.0;  ///< dt1 dt2 / (dt1 + dt2)
+    bool is_taken_out = false;
+  };
+  /// Of one interval, over its whole length.
+  struct Wander {
+    double usual = 0.0;
+    double step = 0.0;
+  };
+  [[nodiscard]] DriftLevel between(std::size_t n) const;
+  [[nodiscard]] Off off_line(std::size_t n) const;
+  [[nodiscard]] double step_within(const std::vector<Off>& offs, std::size_t n) const;
+  [[nodiscard]] bool take_out_step(std::vector<Off>& offs, std::vector<double>& steps) const;
   void find_wander();
 
   std::vector<ReferenceVisit> visits_;  ///< in time order
   std::optional<double> limit_;
-  std::optional<double> wander_rate_;  ///< variance a second, of levels of about 1
+  std::vector<Wander> wanders_;  ///< of each interval; empty: too few visits
   double wander_dof_ = 0.0;
 };
 
