@@ -265,66 +265,85 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                           mount->height.u = kHeight;
                         }
                       }});
-  list.push_back(
-      {.name = "wide_cones",
-       .what = "glint; source and detector of 3 deg half angle, known to 0.1 deg",
-       .file = "glint",
-       .first_seed = 24'000'000,
-       .plan = coarse_lobe(),
-       .has_lobe = true,
-       .draw =
-           [](Scene& s, Chance& chance) {
-             s.effects.cones = sim::ConeSpec{.source_half = kCone + kUCone * chance.normal(),
-                                             .detector_half = kCone + kUCone * chance.normal(),
-                                             .tolerance = 3e-4};
-           },
-       .tell =
-           [](InstrumentModel& m) {
-             m.cones = calibration::ConeModel{.source_half = {kCone, kUCone}, .detector_half = {kCone, kUCone}};
-           },
-       .fails_for = "curvature that the points leave unresolved is taken for larger than it is"});
+  const auto draw_cones = [](Scene& s, Chance& chance) {
+    s.effects.cones = sim::ConeSpec{.source_half = kCone + kUCone * chance.normal(),
+                                    .detector_half = kCone + kUCone * chance.normal(),
+                                    .tolerance = 3e-4};
+  };
+  const auto tell_cones = [](InstrumentModel& m) {
+    m.cones = calibration::ConeModel{.source_half = {kCone, kUCone}, .detector_half = {kCone, kUCone}};
+  };
+  ScanPlan few = small_plan();
+  few.frames = 1;
+  few.exposure_s = 0.016;
+  list.push_back({.name = "cones_matt",
+                  .what = "canopy; source and detector of 3 deg half angle, known to 0.1 deg",
+                  .file = "wheat",
+                  .first_seed = 28'000'000,
+                  .plan = few,
+                  .draw = draw_cones,
+                  .tell = tell_cones});
+  list.push_back({.name = "wide_cones",
+                  .what = "glint; source and detector of 3 deg half angle, known to 0.1 deg",
+                  .file = "glint",
+                  .first_seed = 24'000'000,
+                  .plan = coarse_lobe(),
+                  .has_lobe = true,
+                  .draw = draw_cones,
+                  .tell = tell_cones,
+                  .fails_for = "the curvature along phi of a point with one neighbour is taken for too small"});
 }
 
 void add_stray_scenes(std::vector<CoverageScene>& list) {
   constexpr double kDegree = 0.01;
-  list.push_back({.name = "polarised",
-                  .what = "source and detector polarise by 1 % in planes that nobody knows, a glint",
-                  .file = "glint",
-                  .first_seed = 25'000'000,
-                  .plan = through_the_mirror_direction(),
-                  .has_lobe = true,
-                  .draw =
-                      [](Scene& s, Chance& chance) {
-                        s.effects.polarisation =
-                            sim::PolarisationSpec{.source_degree = kDegree,
-                                                  .source_plane = degrees(180.0 * chance.uniform()),
-                                                  .detector_diattenuation = kDegree,
-                                                  .detector_plane = degrees(180.0 * chance.uniform())};
-                      },
-                  .tell =
-                      [](InstrumentModel& m) {
-                        // The deviation of cos(2 angle) for a plane of any angle; the standard depolarises.
-                        m.polarisation = calibration::PolarisationModel{.source_degree = kDegree,
-                                                                        .detector_diattenuation = kDegree,
-                                                                        .u_sample = std::numbers::sqrt2 / 2.0,
-                                                                        .u_reference = 0.0,
-                                                                        .sample_index = 1.34};
-                      },
-                  .fails_for = "the parts of source and detector are added up as if their planes were the same"});
-  ScanPlan visited;
-  visited.stray_visits = true;
+  list.push_back(
+      {.name = "polarised",
+       .what = "source and detector polarise by 1 % in planes that nobody knows, a glint without the water body",
+       .file = "glint",
+       .first_seed = 25'000'000,
+       .plan = through_the_mirror_direction(),
+       .has_lobe = true,
+       .bend = [](Scene& s) { s.sample.resize(1, s.sample.front()); },  // facets alone, as is told
+       .draw =
+           [](Scene& s, Chance& chance) {
+             s.effects.polarisation = sim::PolarisationSpec{.source_degree = kDegree,
+                                                            .source_plane = degrees(180.0 * chance.uniform()),
+                                                            .detector_diattenuation = kDegree,
+                                                            .detector_plane = degrees(180.0 * chance.uniform())};
+           },
+       .tell =
+           [](InstrumentModel& m) {
+             // The deviation of cos(2 angle) for a plane of any angle; the standard depolarises.
+             m.polarisation = calibration::PolarisationModel{.source_degree = kDegree,
+                                                             .detector_diattenuation = kDegree,
+                                                             .u_sample = std::numbers::sqrt2 / 2.0,
+                                                             .u_reference = 0.0,
+                                                             .sample_index = 1.34};
+           }});
+  ScanPlan lit;
+  lit.ambient_visits = true;
+  list.push_back({.name = "ambient",
+                  .what = "black, room light as bright as it",
+                  .file = "dark",
+                  .first_seed = 29'000'000,
+                  .plan = lit,
+                  .draw = [](Scene& s, Chance& chance) {
+                    s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
+                                                     .source_share = 0.0,
+                                                     .internal_share = 0.0};
+                  }});
+  ScanPlan visited = lit;
+  visited.trap_visits = true;
   list.push_back({.name = "stray",
                   .what = "black, room light and stray light of the lamp, both as bright as it",
                   .file = "dark",
                   .first_seed = 26'000'000,
                   .plan = visited,
-                  .draw =
-                      [](Scene& s, Chance& chance) {
-                        s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
-                                                         .source_share = 1e-4 * (1.0 + chance.uniform()),
-                                                         .internal_share = 0.0};
-                      },
-                  .fails_for = "a visit's own darks are taken for independent of those of the readings it clears"});
+                  .draw = [](Scene& s, Chance& chance) {
+                    s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
+                                                     .source_share = 1e-4 * (1.0 + chance.uniform()),
+                                                     .internal_share = 0.0};
+                  }});
 }
 
 void add_anchor_scenes(std::vector<CoverageScene>& list) {

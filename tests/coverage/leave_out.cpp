@@ -55,7 +55,7 @@ const char* correction_name(Correction correction) {
 
 std::vector<LeftOutCase> left_out_cases() {
   return {{Correction::Dark, "dark"},
-          {Correction::Ambient, "stray"},
+          {Correction::Ambient, "ambient"},
           {Correction::Stray, "stray"},
           {Correction::Linearity, "nonlinear"},
           {Correction::ExposureOffset, "exposure_offset"},

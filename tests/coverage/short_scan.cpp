@@ -163,8 +163,8 @@ void ShortScan::visit_standard(const sim::ReadingLevel& instrument) {
 }
 
 void ShortScan::visit_stray(const sim::ReadingLevel& instrument) {
-  if (!plan_.stray_visits) return;
   for (const Target target : {Target::Ambient, Target::Trap}) {
+    if (!(target == Target::Ambient ? plan_.ambient_visits : plan_.trap_visits)) continue;
     now_s_ += kMoveS;
     ++moves_;
     RawReading& reading = begin(target);

@@ -50,8 +50,8 @@ struct ScanPlan {
   double u_dark_drift_dn_per_s = 0.0;
   /// Visits of the standard before the first block and after each, at 0/45 or as near to it as the points are.
   bool visits = false;
-  /// Visits with the source's shutter closed and of the black trap, likewise.
-  bool stray_visits = false;
+  bool ambient_visits = false;  ///< with the source's shutter closed, likewise
+  bool trap_visits = false;     ///< of the black trap, likewise
   calibration::ReferenceMode reference_mode = calibration::ReferenceMode::SameGeometry;
   /// A monitor that shows 1, whatever the lamp does.
   bool monitor_is_blind = false;
