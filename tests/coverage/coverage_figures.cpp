@@ -22,7 +22,7 @@ std::uint8_t bit(Stratum stratum) {
 }
 
 std::uint8_t strata_of(const Geometry& g, double truth, double expanded, double lobe_from) {
-  const double theta_r = in_degrees(g.theta_r);
+  const double theta_r = in_degrees(g.theta_r) + 0.01;  // 60 deg is 60 deg, whatever its last bit
   std::uint8_t strata = bit(theta_r < 30.0 ? Stratum::Near : theta_r < 60.0 ? Stratum::Middle : Stratum::Far);
   if (truth >= lobe_from) strata |= bit(Stratum::Lobe);
   if (std::abs(truth) <= expanded) strata |= bit(Stratum::NearZero);

@@ -291,7 +291,7 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                   .has_lobe = true,
                   .draw = draw_cones,
                   .tell = tell_cones,
-                  .fails_for = "the curvature along phi of a point with one neighbour is taken for too small"});
+                  .fails_for = "too wide: curvature that the points leave unresolved is taken for larger than it is"});
 }
 
 void add_stray_scenes(std::vector<CoverageScene>& list) {
