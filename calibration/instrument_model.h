@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/units.h"
+#include "calibration/absolute_model.h"
+#include "calibration/overlap_model.h"
 #include "calibration/power_model.h"
 
 namespace gonio::calibration {
@@ -123,20 +125,6 @@ struct MountingModel {
 struct SpectralModel {
   Wavelength u_centroid;  ///< shared by all readings of one wavelength
   Wavelength bandwidth;   ///< full width at half maximum
-};
-
-/// Round lit spot and round field of view across their beams, and the round targets they fall on.
-struct OverlapModel {
-  Measured<Length> spot_radius;
-  Measured<Length> field_radius;
-  std::optional<Length> sample_radius;     ///< none: endless
-  std::optional<Length> reference_radius;  ///< none: endless
-};
-
-/// What a measurement without a standard rests on.
-struct AbsoluteModel {
-  Measured<SolidAngle> detector_solid_angle;
-  Measured<double> attenuation;  ///< of the direct beam when it was measured: light passed / light
 };
 
 /// The instrument's side of the measurement equation, from instrument.toml and the calibrations that a scan names. What
