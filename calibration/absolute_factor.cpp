@@ -11,7 +11,7 @@
 namespace gonio::calibration {
 namespace {
 
-double square(double x) {
+double squared_ratio(double x) {
   return x * x;
 }
 
@@ -39,8 +39,8 @@ Measured<SolidAngle> detector_solid_angle(const AbsoluteModel& absolute, Length 
   const double stretch = 1.0 / std::cos(g.theta_i.si());
   const double dphi = (g.phi_r - g.phi_i).si();
   const double p2 = 0.25 * spot * spot * (stretch * stretch + 1.0);
-  const double x2 =
-      0.25 * square(spot * std::sin(g.theta_r.si())) * (square(stretch * std::cos(dphi)) + square(std::sin(dphi)));
+  const double x2 = 0.25 * squared_ratio(spot * std::sin(g.theta_r.si())) *
+                    (squared_ratio(stretch * std::cos(dphi)) + squared_ratio(std::sin(dphi)));
   const double sr = std::numbers::pi * a * a * (1.0 - 2.0 * (0.5 * a * a + p2 - 4.0 * x2));
   const double u = 2.0 * std::hypot(absolute.aperture_radius.u / absolute.aperture_radius.value,
                                     absolute.aperture_distance.u / absolute.aperture_distance.value);
@@ -69,18 +69,26 @@ Result<AbsoluteRatio> absolute_ratio(const Geometry& sample, Wavelength waveleng
   ratio.sample_slope = geometry.slope;
   ratio.is_mixed = geometry.is_mixed;
   ratio.terms = geometry.terms;
-  const auto add = [&](std::string name, double u, double per_sd, double dof) {
-    if (u != 0.0) ratio.terms.push_back({std::move(name), u, "1", instrument.version, per_sd, dof});
+  const auto add = [&](std::int64_t number, std::string name, double u, double per_sd, double dof) {
+    if (u == 0.0) return;
+    ratio.terms.push_back(
+        {.key = {ComponentSource::DirectBeam, number, number == 1 ? std::llround(in_nanometres(wavelength) * 1e3) : 0},
+         .name = std::move(name),
+         .u = u,
+         .unit = "1",
+         .owner = owner_of(instrument),
+         .per_sd = per_sd,
+         .degrees_of_freedom = dof});
   };
   constexpr double kKnown = std::numeric_limits<double>::infinity();
   const double u_beam = beam->q.u / beam->q.value;
   const double u_attenuation = absolute.attenuation.u / absolute.attenuation.value;
   const double u_radius = absolute.aperture_radius.u / absolute.aperture_radius.value;
   const double u_distance = absolute.aperture_distance.u / absolute.aperture_distance.value;
-  add(fmt::format("direct beam at {:g} nm", in_nanometres(wavelength)), u_beam, -u_beam, beam->degrees_of_freedom);
-  add("attenuator of the direct beam", u_attenuation, u_attenuation, kKnown);
-  add("radius of the detector's stop", u_radius, -2.0 * u_radius, kKnown);
-  add("distance of the detector's stop", u_distance, 2.0 * u_distance, kKnown);
+  add(1, fmt::format("direct beam at {:g} nm", in_nanometres(wavelength)), u_beam, -u_beam, beam->degrees_of_freedom);
+  add(2, "attenuator of the direct beam", u_attenuation, u_attenuation, kKnown);
+  add(3, "radius of the detector's stop", u_radius, -2.0 * u_radius, kKnown);
+  add(4, "distance of the detector's stop", u_distance, 2.0 * u_distance, kKnown);
   return ratio;
 }
 

@@ -80,7 +80,7 @@ void keep_pair(const PlannedPoint& point, const ReadingPair& readings, PairedPoi
                           .value = per_steradian(pair.value),
                           .budget = {},
                           .sample_reading = readings.sample->id,
-                          .reference_reading = readings.reference->id});
+                          .reference_reading = pair.reference_id});
   draft.places.push_back({.planned = point.geometry,
                           .reported = pair.sample.geometry,
                           .wavelength = point.wavelength,
@@ -100,7 +100,7 @@ Draft draft_block(const std::vector<ReadingPair>& pairs, std::size_t first, std:
   for (std::size_t n = first; n < last; ++n) {
     const PlannedPoint& point = shop.scan.points[n];
     if (pairs[n].sample == nullptr) continue;
-    if (pairs[n].reference == nullptr) {
+    if (pairs[n].reference == nullptr && shop.scan.reference_mode == ReferenceMode::SameGeometry) {
       draft.refused.push_back({point.index, no_reference(point)});
       continue;
     }
@@ -173,7 +173,8 @@ std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const Dire
   set(PointFlag::DarkExtrapolated, is_extrapolated(pair.sample) || is_extrapolated(pair.reference));
   set(PointFlag::FewNeighbours, !std::ranges::all_of(slopes.has_neighbours, std::identity{}));
   set(PointFlag::BorrowedReference, borrowed);
-  set(PointFlag::Drifted, is_drifted(pair.sample_drift) || is_drifted(pair.reference_drift));
+  set(PointFlag::Drifted, is_drifted(pair.sample_drift) || is_drifted(pair.reference_drift) || pair.is_anchor_drifted);
+  set(PointFlag::Mixed, pair.is_mixed);
   set(PointFlag::UncertainDivisor,
       std::hypot(pair.reference.u_noise, pair.reference.u_monitor) > kLinearUpTo * pair.reference.q);
   set(PointFlag::InstrumentLimited, cones.is_limited);

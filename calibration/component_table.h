@@ -48,7 +48,8 @@ enum class ComponentSource : std::uint8_t {
   UnresolvedMounting,
   Centroid,
   Bandwidth,
-  Geometry,  ///< of what does not cancel between two geometries
+  Geometry,    ///< of what does not cancel between two geometries
+  DirectBeam,  ///< of what stands in the standard's place
 };
 
 /// Numbers the components of a scan, or of a part of it, as they first appear.

@@ -92,7 +92,8 @@ ConeCorrection cone_correction(const PairedPoint& point, const DirectionSlopes& 
   const ConeOperator i = operator_of(slopes, 0, point.sample.geometry.theta_i);
   const ConeOperator r = operator_of(slopes, 1, point.sample.geometry.theta_r);
   const DirectionSlopes bends = bends_of(standard, point.reference.geometry);
-  const double per_shape = point.value / point.standard.shape;
+  const bool has_standard = point.mode != ReferenceMode::Absolute;
+  const double per_shape = has_standard ? point.value / point.standard.shape : 0.0;
   const double i_ref = per_shape * operator_of(bends, 0, point.reference.geometry.theta_i).value;
   const double r_ref = per_shape * operator_of(bends, 1, point.reference.geometry.theta_r).value;
   c.sample_bias = source * i.value + detector * r.value;

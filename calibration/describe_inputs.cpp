@@ -57,6 +57,23 @@ void describe(std::string_view name, const MountModel& m, InputText& text) {
   if (!m.mounting.empty()) text.say("mounting " + m.mounting + "\n");
 }
 
+void describe(const OverlapModel& o, InputText& text) {
+  const auto size = [](const std::optional<Length>& radius) { return radius ? radius->si() : 0.0; };
+  text.line("beams", {o.spot_radius.value.si(), o.spot_radius.u.si(), o.field_radius.value.si(), o.field_radius.u.si(),
+                      size(o.sample_radius), size(o.reference_radius), o.u_target_radius.si(), o.u_spot_falloff,
+                      o.u_field_falloff, o.u_offset.si()});
+  for (const RadialNode& node : o.spot_profile) text.line("spot", {node.of_radius, node.value});
+  for (const RadialNode& node : o.field_profile) text.line("field", {node.of_radius, node.value});
+}
+
+void describe(const AbsoluteModel& a, InputText& text) {
+  text.line("direct beam", {a.attenuation.value, a.attenuation.u, a.aperture_radius.value.si(),
+                            a.aperture_radius.u.si(), a.aperture_distance.value.si(), a.aperture_distance.u.si()});
+  for (const DirectBeam& b : a.beams) {
+    text.line("beam", {b.wavelength.si(), b.q.value, b.q.u, b.degrees_of_freedom, b.mean_net_dn, b.dlnq_dt0});
+  }
+}
+
 void describe_optional_parts(const InstrumentModel& i, InputText& text) {
   const DetectorModel& d = i.detector;
   if (d.noise == NoiseSource::RepeatedFrames) text.say("noise of repeated frames\n");
@@ -90,6 +107,8 @@ void describe_optional_parts(const InstrumentModel& i, InputText& text) {
     text.line("source distance", {i.mounting->source_distance.si()});
   }
   if (i.spectral) text.line("spectral", {i.spectral->u_centroid.si(), i.spectral->bandwidth.si()});
+  if (i.overlap) describe(*i.overlap, text);
+  if (i.absolute) describe(*i.absolute, text);
   if (!i.version.empty()) text.say("instrument " + i.version + "\n");
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "calibration/offset_overlap.h"
@@ -24,7 +26,7 @@ Slopes of_intensity(const Geometry& g) {
   return {0.0, -std::tan(g.theta_r.si()), 0.0};
 }
 
-double relative(const Measured<Length>& length) {
+double relative_u(const Measured<Length>& length) {
   return length.u / length.value;
 }
 
@@ -32,7 +34,7 @@ double relative(const Measured<Length>& length) {
 double margin_of(const OverlapModel& model) {
   constexpr double kLeast = 0.02;
   constexpr double kSurely = 3.0;
-  return std::max(kLeast, kSurely * std::hypot(relative(model.spot_radius), relative(model.field_radius)));
+  return std::max(kLeast, kSurely * std::hypot(relative_u(model.spot_radius), relative_u(model.field_radius)));
 }
 
 /// One target's side of the ratio.
@@ -109,21 +111,28 @@ class Side {
   BeamMode mode_;
 };
 
-/// What may add to the terms of a point, by its name.
-class TermList {
+/// Adds to the terms of a point, each under a number of its own.
+class BeamTerms {
  public:
-  TermList(std::vector<RelativeTerm>& terms, const std::string& owner) : terms_(terms), owner_(owner) {}
-  void add(std::string name, double u, std::string unit, double per_sd) {
-    put(std::move(name), u, std::move(unit), owner_, per_sd);
+  BeamTerms(std::vector<RelativeTerm>& terms, const std::string& owner) : terms_(terms), owner_(owner) {}
+  void add(std::int64_t number, std::string_view name, double u, std::string_view unit, double per_sd) {
+    put(number, name, u, unit, owner_, per_sd);
   }
   /// Not the instrument's: of what lies on the stage.
-  void add_own(std::string name, double u, std::string unit, double per_sd) {
-    put(std::move(name), u, std::move(unit), {}, per_sd);
+  void add_own(std::int64_t number, std::string_view name, double u, double per_sd) {
+    put(number, name, u, "1", {}, per_sd);
   }
 
  private:
-  void put(std::string name, double u, std::string unit, const std::string& owner, double per_sd) {
-    if (u != 0.0 && per_sd != 0.0) terms_.push_back({std::move(name), u, std::move(unit), owner, per_sd});
+  void put(std::int64_t number, std::string_view name, double u, std::string_view unit, const std::string& owner,
+           double per_sd) {
+    if (u == 0.0 || per_sd == 0.0) return;
+    terms_.push_back({.key = {ComponentSource::Geometry, number},
+                      .name = std::string(name),
+                      .u = u,
+                      .unit = std::string(unit),
+                      .owner = owner,
+                      .per_sd = per_sd});
   }
   std::vector<RelativeTerm>& terms_;
   const std::string& owner_;
@@ -141,8 +150,8 @@ struct Sensitivities {
 
 Sensitivities sensitivities(const Side& side, const OverlapModel& model, const std::optional<Length>& target) {
   const Overlap even = side.even();
-  Sensitivities s{.spot = side.per_sd(&BeamDiscs::spot_radius, relative(model.spot_radius), even.by_spot),
-                  .field = side.per_sd(&BeamDiscs::field_radius, relative(model.field_radius), even.by_field),
+  Sensitivities s{.spot = side.per_sd(&BeamDiscs::spot_radius, relative_u(model.spot_radius), even.by_spot),
+                  .field = side.per_sd(&BeamDiscs::field_radius, relative_u(model.field_radius), even.by_field),
                   .target = target ? even.by_target * (model.u_target_radius / *target) : 0.0,
                   .spot_falloff = (1.0 - 2.0 * even.spot_mean_square) * model.u_spot_falloff,
                   .field_falloff = (1.0 - 2.0 * even.field_mean_square) * model.u_field_falloff};
@@ -154,18 +163,18 @@ Sensitivities sensitivities(const Side& side, const OverlapModel& model, const s
 }
 
 // ln f_s goes as minus ln O of the sample and plus that of the reference, where there is one.
-void add_terms(TermList terms, const OverlapModel& model, const Sensitivities& s, const Sensitivities& r,
-               double spot_area) {
+void add_beam_terms(BeamTerms terms, const OverlapModel& model, const Sensitivities& s, const Sensitivities& r,
+                    double spot_area) {
   const auto u_of = [](const Length& u, const std::optional<Length>& of) { return of ? u / *of : 0.0; };
-  terms.add("radius of the lit spot", relative(model.spot_radius), "1", spot_area + r.spot - s.spot);
-  terms.add("radius of the field of view", relative(model.field_radius), "1", r.field - s.field);
-  terms.add_own("radius of the sample", u_of(model.u_target_radius, model.sample_radius), "1", -s.target);
-  terms.add_own("radius of the reference", u_of(model.u_target_radius, model.reference_radius), "1", r.target);
-  terms.add("unevenness of the lit spot", model.u_spot_falloff, "1", r.spot_falloff - s.spot_falloff);
-  terms.add("unevenness of the field of view", model.u_field_falloff, "1", r.field_falloff - s.field_falloff);
+  terms.add(1, "radius of the lit spot", relative_u(model.spot_radius), "1", spot_area + r.spot - s.spot);
+  terms.add(2, "radius of the field of view", relative_u(model.field_radius), "1", r.field - s.field);
+  terms.add_own(3, "radius of the sample", u_of(model.u_target_radius, model.sample_radius), -s.target);
+  terms.add_own(4, "radius of the reference", u_of(model.u_target_radius, model.reference_radius), r.target);
+  terms.add(5, "unevenness of the lit spot", model.u_spot_falloff, "1", r.spot_falloff - s.spot_falloff);
+  terms.add(6, "unevenness of the field of view", model.u_field_falloff, "1", r.field_falloff - s.field_falloff);
   const double u_mm = in_millimetres(model.u_offset);
-  terms.add("spot off the field, in the plane of incidence", u_mm, "mm", r.offset[0] - s.offset[0]);
-  terms.add("spot off the field, across the plane of incidence", u_mm, "mm", r.offset[1] - s.offset[1]);
+  terms.add(7, "spot off the field, in the plane of incidence", u_mm, "mm", r.offset[0] - s.offset[0]);
+  terms.add(8, "spot off the field, across the plane of incidence", u_mm, "mm", r.offset[1] - s.offset[1]);
 }
 
 // Read at the same place, on targets of the same size: what the terms leave is far below the angles' own.
@@ -176,12 +185,6 @@ bool cancels(const Geometry& a, const Geometry& b, const OverlapModel& model) {
 }
 
 }  // namespace
-
-double log_geometry(const Geometry& g, const InstrumentModel& instrument, Target target) {
-  if (!instrument.overlap) return std::log(std::cos(g.theta_i.si()));
-  const OverlapModel& model = *instrument.overlap;
-  return Side(g, model, target == Target::Reference ? model.reference_radius : model.sample_radius).log_h();
-}
 
 GeometryRatio geometry_ratio(const Geometry& sample, const Geometry& reference, const InstrumentModel& instrument,
                              const LeftOut& left_out) {
@@ -200,8 +203,9 @@ GeometryRatio geometry_ratio(const Geometry& sample, const Geometry& reference, 
     return ratio;
   }
   ratio.reference_slope = of_reference.slopes();
-  add_terms({ratio.terms, instrument.version}, model, sensitivities(of_sample, model, model.sample_radius),
-            sensitivities(of_reference, model, model.reference_radius), 0.0);
+  const std::string owner = owner_of(instrument);
+  add_beam_terms({ratio.terms, owner}, model, sensitivities(of_sample, model, model.sample_radius),
+                 sensitivities(of_reference, model, model.reference_radius), 0.0);
   return ratio;
 }
 
@@ -213,8 +217,9 @@ GeometryTerms absolute_geometry(const Geometry& sample, const InstrumentModel& i
   GeometryTerms found{.factor = std::exp(-side.log_h()) / (field_over_spot * field_over_spot),
                       .slope = side.slopes(),
                       .is_mixed = side.mode() == BeamMode::Mixed};
-  add_terms({found.terms, instrument.version}, model, sensitivities(side, model, model.sample_radius), {},
-            2.0 * relative(model.spot_radius));
+  const std::string owner = owner_of(instrument);
+  add_beam_terms({found.terms, owner}, model, sensitivities(side, model, model.sample_radius), {},
+                 2.0 * relative_u(model.spot_radius));
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "calibration/component_table.h"
 #include "calibration/instrument_model.h"
 #include "calibration/left_out.h"
 #include "calibration/raw_reading.h"
@@ -14,6 +15,7 @@ namespace gonio::calibration {
 
 /// One standard deviation of a shared component, as a relative change of f_s.
 struct RelativeTerm {
+  ComponentTable::Key key;
   std::string name;
   double u = 0.0;  ///< k = 1, in `unit`
   std::string unit;
@@ -21,6 +23,11 @@ struct RelativeTerm {
   double per_sd = 0.0;                                                  ///< d ln f_s, signed
   double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of u
 };
+
+/// Whose the instrument's errors are: Component::owner.
+[[nodiscard]] inline std::string owner_of(const InstrumentModel& instrument) {
+  return instrument.version.empty() ? std::string() : "instrument " + instrument.version;
+}
 
 /// What h = mu_i mu_r O of the sample's and the reference's reading makes of their ratio.
 struct GeometryRatio {
@@ -51,8 +58,5 @@ struct GeometryTerms {
 /// Of the sample. Where the field lies within the spot it rests on the square of the ratio of both radii. `instrument`
 /// states spot and field of view (asserted).
 [[nodiscard]] GeometryTerms absolute_geometry(const Geometry& sample, const InstrumentModel& instrument);
-
-/// ln h at one geometry, h in units in which it is mu_i where the field lies within the spot.
-[[nodiscard]] double log_geometry(const Geometry& g, const InstrumentModel& instrument, Target target);
 
 }  // namespace gonio::calibration

@@ -196,8 +196,8 @@ void add_mounting_terms(const PairedPoint& point, const DirectionSlopes& slopes,
       if (error.u == 0.0) continue;
       const Shift shift = shift_of(error.one_sd, mounting.source_distance, reading.geometry);
       const SlopeEffect moved(reading.geometry, shift);
-      const double log_slope = is_sample ? point.sample_log_slope[0] : point.reference_log_slope[0];
-      const double level = log_slope * moved.theta(0) + shift.log_irradiance;
+      const auto& log_slope = is_sample ? point.sample_log_slope : point.reference_log_slope;
+      const double level = log_slope[0] * moved.theta(0) + log_slope[1] * moved.theta(1) + shift.log_irradiance;
       const Effect effect = is_sample ? moved.of(slopes.slope, slopes.unresolved) : moved.of(point.standard.slope, {});
       const double per_sd = is_sample ? effect.value + point.value * level : -point.value * (effect.value + level);
       terms.shared({ComponentSource::Mounting, number}, error.u, error.unit, per_sd,
@@ -209,7 +209,7 @@ void add_mounting_terms(const PairedPoint& point, const DirectionSlopes& slopes,
     }
   };
   add(true);
-  add(false);
+  if (point.mode != ReferenceMode::Absolute) add(false);
 }
 
 }  // namespace gonio::calibration

@@ -9,7 +9,7 @@
 namespace gonio::calibration {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kHalfCircle = std::numbers::pi;
 
 // 1 / r^2 = a + b cos(2 phi) + c sin(2 phi), in mm^-2.
 struct InverseSquare {
@@ -49,8 +49,8 @@ struct Cuts {
   std::array<double, 7> at{};
   std::size_t count = 0;
   void add(double doubled) {
-    const double turns = doubled / (2.0 * kHalfTurn);
-    at[count++] = 2.0 * kHalfTurn * (turns - std::floor(turns));
+    const double turns = doubled / (2.0 * kHalfCircle);
+    at[count++] = 2.0 * kHalfCircle * (turns - std::floor(turns));
   }
 };
 
@@ -130,7 +130,7 @@ Overlap overlap_of(const BeamDiscs& discs, const Geometry& g) {
   }
   if (cuts.count == 0) cuts.add(0.0);
   std::sort(cuts.at.begin(), cuts.at.begin() + static_cast<std::ptrdiff_t>(cuts.count));
-  cuts.at[cuts.count] = cuts.at[0] + 2.0 * kHalfTurn;
+  cuts.at[cuts.count] = cuts.at[0] + 2.0 * kHalfCircle;
   Overlap sum;
   std::array<double, 3> parts{};
   for (std::size_t k = 0; k < cuts.count; ++k) {

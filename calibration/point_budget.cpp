@@ -40,8 +40,9 @@ class PointTerms {
 
   void add() {
     add_sample_scatter();
-    add_reference_scatter();
-    add_standard();
+    if (p_.mode == ReferenceMode::SameGeometry) add_reference_scatter();  // else it stands in the point's own terms
+    if (p_.mode != ReferenceMode::Absolute) add_standard();
+    add_geometry();
     add_zeros();
     add_detector();
     add_lamp();
@@ -131,6 +132,13 @@ class PointTerms {
         traits);
   }
 
+  void add_geometry() {
+    for (const RelativeTerm& term : p_.terms) {
+      terms_.shared(term.key, term.u, term.unit, p_.value * term.per_sd, [&] { return term.name; },
+                    {.degrees_of_freedom = term.degrees_of_freedom, .owner = term.owner});
+    }
+  }
+
   // Of one zero on the ratio: what both readings have of it, cosines included, cancels at equal geometries.
   [[nodiscard]] double zero_slope(std::size_t axis) const {
     return slopes_.slope[axis] - p_.value * p_.standard.slope[axis] +
@@ -192,6 +200,11 @@ class PointTerms {
 
   void add_lamp() {
     const LampModel& lamp = instrument_.lamp;
+    if (p_.mode == ReferenceMode::Absolute) {  // the direct beam was read at another time
+      terms_.shared({ComponentSource::Lamp, -1}, lamp.u_after_monitor, "1", p_.value * lamp.u_after_monitor,
+                    [] { return "lamp after the monitor, since the direct beam"; });
+      return;
+    }
     const double apart = in_seconds(p_.reference.at - p_.sample.at) / lamp.correlation_s;
     const double middle =
         0.5 * (in_seconds(p_.reference.at.time_since_epoch()) + in_seconds(p_.sample.at.time_since_epoch()));
@@ -222,7 +235,8 @@ class PointTerms {
     }
     const double brightness = std::numbers::pi * p_.standard.rho.value * p_.standard.shape / std::numbers::pi;
     const double both = std::hypot(stray.internal_share.value, stray.internal_share.u);
-    const double reference = p_.value * p_.standard.rho.value / brightness;
+    const bool has_standard = p_.mode != ReferenceMode::Absolute;
+    const double reference = has_standard ? p_.value * p_.standard.rho.value / brightness : 0.0;
     terms_.shared({ComponentSource::InternalStray}, both, "of the light that leaves the target",
                   (reference - p_.value) * both, [] { return "stray light within the detector"; },
                   {.owner = rules_.instrument_owner_});
@@ -240,7 +254,8 @@ Brdf scatter(const PairedPoint& p, const InstrumentModel& instrument) {
   const double sample = p.dvalue_dq * std::hypot(p.sample.u_noise, p.sample.u_monitor);
   const double reference = p.value * std::hypot(p.reference.u_noise, p.reference.u_monitor) / p.reference.q;
   const double placing = p.value * instrument.lamp.u_reproducibility;
-  return per_steradian(std::sqrt(sample * sample + reference * reference + 2.0 * placing * placing));
+  const double placings = p.mode == ReferenceMode::SameGeometry ? 2.0 : 1.0;  // of an anchor it does not scatter
+  return per_steradian(std::sqrt(sample * sample + reference * reference + placings * placing * placing));
 }
 
 BudgetRules::BudgetRules(const InstrumentModel& instrument, const ReferenceStandard& standard, bool has_trap_visits)

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
+#include "calibration/absolute_factor.h"
 #include "calibration/mounting_term.h"
 
 namespace gonio::calibration {
@@ -34,11 +36,11 @@ StandardView view_of(const ReferenceStandard& standard, const Measured<double>& 
   return view;
 }
 
-Error no_light(const PlannedPoint& point, const RawReading& reading, const NormalisedReading& q, bool is_power) {
+Error no_light(const PlannedPoint& point, std::int64_t reading, const NormalisedReading& q, bool is_power) {
   return {.code = ErrorCode::IncompleteData,
           .device = "detector",
           .tried = fmt::format("calibrate point {}", point.index),
-          .seen = fmt::format("reference reading {} of {:.4g} {} net", reading.id, q.mean_net_dn,
+          .seen = fmt::format("reference reading {} of {:.4g} {} net", reading, q.mean_net_dn,
                               is_power ? "of its range" : "DN"),
           .limit = "more than 0"};
 }
@@ -67,7 +69,7 @@ double place_both(PairedPoint& pair, const InstrumentModel& instrument, bool is_
 void evaluate(PairedPoint& pair, const EquationContext& context) {
   const double mu_s = std::cos(pair.sample.geometry.theta_i.si());
   const double f_ref = pair.standard.rho.value * pair.standard.shape / std::numbers::pi;
-  pair.dvalue_dq = f_ref * pair.cosine_ratio * pair.drift_ratio / pair.reference.q;
+  pair.dvalue_dq = f_ref * pair.geometry_ratio * pair.drift_ratio / pair.reference.q;
   pair.stray = 1.0 / (std::numbers::pi * mu_s);
   double background = 0.0;
   const auto& stray = context.instrument->stray;
@@ -78,32 +80,75 @@ void evaluate(PairedPoint& pair, const EquationContext& context) {
   pair.value = pair.dvalue_dq * pair.sample.q - background;
 }
 
+// The standard at the same geometry, or its visits at the anchor at the sample's moment.
+Result<void> add_reference(PairedPoint& pair, const ReadingPair& readings, const EquationContext& context) {
+  if (const auto& anchor = context.histories->anchor()) {
+    auto found = anchor->at(pair.wavelength, pair.sample.at);
+    if (!found) return failure(std::move(found).error());
+    pair.reference = std::move(found->reading);
+    pair.reference_id = found->reading_id;
+    pair.terms = std::move(found->terms);
+    pair.is_anchor_drifted = found->is_large;
+    return {};
+  }
+  auto reference = normalise(*readings.reference, context.histories->context());
+  if (!reference) return failure(std::move(reference).error());
+  pair.reference = std::move(*reference);
+  pair.reference_id = readings.reference->id;
+  pair.reference_is_shared = readings.is_shared;
+  return {};
+}
+
+void take_geometry(PairedPoint& pair, GeometryRatio ratio) {
+  pair.geometry_ratio = ratio.factor;
+  pair.sample_log_slope = ratio.sample_slope;
+  pair.reference_log_slope = ratio.reference_slope;
+  pair.is_mixed = ratio.is_mixed;
+  pair.terms.insert(pair.terms.end(), std::make_move_iterator(ratio.terms.begin()),
+                    std::make_move_iterator(ratio.terms.end()));
+}
+
+Result<PairedPoint> by_direct_beam(PairedPoint pair, const EquationContext& context) {
+  const InstrumentModel& instrument = *context.instrument;
+  const MountingModel* mounting = instrument.mounting && !context.left_out.mounting ? &*instrument.mounting : nullptr;
+  const double nearness = place_on(pair.sample, instrument.angles, mounting != nullptr ? &mounting->sample : nullptr,
+                                   mounting != nullptr ? mounting->source_distance : Length{});
+  auto ratio = absolute_ratio(pair.sample.geometry, pair.wavelength, instrument, context.left_out);
+  if (!ratio) return failure(std::move(ratio).error());
+  pair.sample_log_slope = ratio->sample_slope;
+  pair.is_mixed = ratio->is_mixed;
+  pair.terms = std::move(ratio->terms);
+  pair.reference.q = 1.0;
+  pair.reference.mean_net_dn = ratio->beam_net_dn;
+  pair.reference.dlnq_dt0 = ratio->beam_dlnq_dt0;
+  pair.standard.rho.value = 1.0;
+  pair.dvalue_dq = ratio->dvalue_dq / nearness;
+  pair.value = pair.dvalue_dq * pair.sample.q;
+  return pair;
+}
+
 }  // namespace
 
 Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& readings, const EquationContext& context) {
-  const ReferenceStandard& standard = *context.standard;
-  auto q_sample = normalise(*readings.sample, context.histories->context());
-  if (!q_sample) return failure(std::move(q_sample).error());
-  auto q_reference = normalise(*readings.reference, context.histories->context());
-  if (!q_reference) return failure(std::move(q_reference).error());
-  PairedPoint pair{.sample = std::move(*q_sample),
-                   .reference = std::move(*q_reference),
-                   .reference_id = readings.reference->id,
-                   .reference_is_shared = readings.is_shared,
+  auto sample = normalise(*readings.sample, context.histories->context());
+  if (!sample) return failure(std::move(sample).error());
+  PairedPoint pair{.mode = context.histories->mode(),
+                   .sample = std::move(*sample),
                    .wavelength = point.wavelength,
                    .polarisation = point.polarisation};
+  if (pair.mode == ReferenceMode::Absolute) return by_direct_beam(std::move(pair), context);
+  GONIO_TRY(add_reference(pair, readings, context));
   const double nearness = place_both(pair, *context.instrument, !context.left_out.mounting);
+  const ReferenceStandard& standard = *context.standard;
   GONIO_TRY(standard.check_reach(point.wavelength, pair.reference.geometry));
   if (!(pair.reference.q > 0.0)) {
-    return failure(
-        no_light(point, *readings.reference, pair.reference, context.instrument->detector.power.has_value()));
+    return failure(no_light(point, pair.reference_id, pair.reference, context.instrument->detector.power.has_value()));
   }
   pair.standard =
       view_of(standard, standard.reflectance(point.wavelength).value(), pair.reference.geometry, context.left_out);
-  pair.cosine_ratio =
-      nearness * std::cos(pair.reference.geometry.theta_i.si()) / std::cos(pair.sample.geometry.theta_i.si());
-  pair.sample_log_slope[0] = -std::tan(pair.sample.geometry.theta_i.si());
-  pair.reference_log_slope[0] = -std::tan(pair.reference.geometry.theta_i.si());
+  take_geometry(pair,
+                geometry_ratio(pair.sample.geometry, pair.reference.geometry, *context.instrument, context.left_out));
+  pair.geometry_ratio *= nearness;
   pair.sample_drift = context.histories->drift_at(pair.sample.at);
   if (pair.sample_drift) {
     pair.reference_drift = context.histories->drift_at(pair.reference.at);

@@ -36,6 +36,7 @@ void add_polarisation_terms(const PairedPoint& point, const InstrumentModel& ins
   add(0, model.u_sample, f * sign * source * facets, "the sample", "source");
   add(1, model.u_sample, f * detector * facets, "the sample", "detector");
   add(2, model.u_sample, f * sign * source * detector, "the sample", "both");
+  if (point.mode == ReferenceMode::Absolute) return;
   add(3, model.u_reference, -f * sign * source, "the reference", "source");
   add(4, model.u_reference, -f * detector, "the reference", "detector");
   add(5, model.u_reference, -f * sign * source * detector, "the reference", "both");

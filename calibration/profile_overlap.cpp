@@ -12,12 +12,6 @@
 namespace gonio::calibration {
 namespace {
 
-// Of one profile along one azimuth: linear between radii on the surface.
-struct Nodes {
-  std::vector<double> radius_mm;
-  std::vector<double> value;
-};
-
 constexpr std::array<RadialNode, 1> kEven{RadialNode{1.0, 1.0}};
 
 std::span<const RadialNode> nodes_of(const std::vector<RadialNode>& profile) {
@@ -25,7 +19,7 @@ std::span<const RadialNode> nodes_of(const std::vector<RadialNode>& profile) {
 }
 
 // How much longer than across the beam its picture on the surface is along this azimuth.
-double stretch(Angle theta, Angle phi, double azimuth) {
+double lengthening(Angle theta, Angle phi, double azimuth) {
   const double along = std::cos(azimuth - phi.si()) * std::sin(theta.si());
   return 1.0 / std::sqrt(1.0 - along * along);
 }
@@ -65,9 +59,9 @@ class AzimuthIntegrand {
   // integral e w r dr
   [[nodiscard]] double operator()(double azimuth) const {
     Along spot(nodes_of(model_.spot_profile),
-               in_millimetres(model_.spot_radius.value) * stretch(g_.theta_i, g_.phi_i, azimuth));
+               in_millimetres(model_.spot_radius.value) * lengthening(g_.theta_i, g_.phi_i, azimuth));
     Along field(nodes_of(model_.field_profile),
-                in_millimetres(model_.field_radius.value) * stretch(g_.theta_r, g_.phi_r, azimuth));
+                in_millimetres(model_.field_radius.value) * lengthening(g_.theta_r, g_.phi_r, azimuth));
     const double end = std::min({spot.end_mm(), field.end_mm(), target_mm_});
     double sum = 0.0;
     for (double from = 0.0; from < end;) {
@@ -89,13 +83,14 @@ class AzimuthIntegrand {
   double target_mm_;
 };
 
-struct Estimate {
+/// By the finer rule, and how far the coarser one is from it.
+struct RulePair {
   double value = 0.0;
   double error = 0.0;
 };
 
 // Gauss-Kronrod 7, 15 (Piessens et al. 1983, QUADPACK qk15).
-Estimate kronrod(const AzimuthIntegrand& f, double from, double to) {
+RulePair kronrod(const AzimuthIntegrand& f, double from, double to) {
   static constexpr std::array<double, 8> kNodes{
       0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
       0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
@@ -164,11 +159,11 @@ std::vector<double> azimuths_of_kinks(const OverlapModel& model, const std::opti
 }
 
 // Both halves beside the whole: at a kink the two rules may agree by chance, the halves then do not.
-double integrate(const AzimuthIntegrand& f, double from, double to, const Estimate& whole, double tolerance,
+double integrate(const AzimuthIntegrand& f, double from, double to, const RulePair& whole, double tolerance,
                  int depth) {
   const double middle = 0.5 * (from + to);
-  const Estimate left = kronrod(f, from, middle);
-  const Estimate right = kronrod(f, middle, to);
+  const RulePair left = kronrod(f, from, middle);
+  const RulePair right = kronrod(f, middle, to);
   const double value = left.value + right.value;
   const double error = std::max(whole.error, std::abs(whole.value - value));
   if (error <= tolerance || depth == 0) return value;
@@ -183,7 +178,7 @@ double profile_overlap_mm2(const OverlapModel& model, std::optional<Length> targ
   constexpr double kRelative = 1e-10;
   const AzimuthIntegrand f(model, target_radius, g);
   const std::vector<double> edges = azimuths_of_kinks(model, target_radius, g);
-  std::vector<Estimate> parts;
+  std::vector<RulePair> parts;
   double coarse = 0.0;
   for (std::size_t k = 1; k < edges.size(); ++k) coarse += parts.emplace_back(kronrod(f, edges[k - 1], edges[k])).value;
   const double tolerance = kRelative * coarse / static_cast<double>(parts.size());

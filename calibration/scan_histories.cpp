@@ -36,12 +36,14 @@ BackgroundHistory history_of(const ScanReadings& scan, Target target, const Read
 ScanHistories::ScanHistories(const ScanReadings& scan, const InstrumentModel& instrument,
                              const CalibrationOptions& options)
     : darks_(scan, instrument.detector),
-      context_{.darks = &darks_, .detector = &instrument.detector, .left_out = options.left_out} {
+      context_{.darks = &darks_, .detector = &instrument.detector, .left_out = options.left_out},
+      mode_(scan.reference_mode) {
   ambient_ = history_of(scan, Target::Ambient, context_);
   if (!ambient_.is_empty()) context_.ambient = &ambient_;
   stray_ = history_of(scan, Target::Trap, context_);
   if (!stray_.is_empty()) context_.stray = &stray_;
-  if (options.correct_drift) drift_.emplace(scan, context_, instrument);
+  if (mode_ == ReferenceMode::Anchor) anchor_.emplace(scan, context_, instrument);
+  if (options.correct_drift && mode_ == ReferenceMode::SameGeometry) drift_.emplace(scan, context_, instrument);
 }
 
 }  // namespace gonio::calibration

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "calibration/anchor_history.h"
 #include "calibration/background_history.h"
 #include "calibration/calibrate.h"
 #include "calibration/dark_history.h"
@@ -25,6 +26,9 @@ class ScanHistories {
   [[nodiscard]] std::optional<DriftLevel> drift_at(Instant when) const {
     return drift_ ? drift_->at(when) : std::nullopt;
   }
+  /// In anchor mode: the standard's visits take the place of reference readings, and drift is theirs.
+  [[nodiscard]] const std::optional<AnchorHistory>& anchor() const { return anchor_; }
+  [[nodiscard]] ReferenceMode mode() const { return mode_; }
   [[nodiscard]] bool has_trap_visits() const { return !stray_.is_empty(); }
 
  private:
@@ -32,7 +36,9 @@ class ScanHistories {
   BackgroundHistory ambient_;
   BackgroundHistory stray_;
   ReadingContext context_;
+  ReferenceMode mode_;
   std::optional<DriftHistory> drift_;
+  std::optional<AnchorHistory> anchor_;
 };
 
 }  // namespace gonio::calibration
