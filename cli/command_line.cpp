@@ -148,7 +148,7 @@ class CommandLine {
     change.add_option("--snr", to.target_snr, "signal-to-noise of a reading")->check(CLI::Range(1.0, 1e6));
     change.add_option("--max-time", to.max_time_s, "of one reading, s")->check(CLI::Range(1e-4, 3600.0));
     change.add_option("--order", to.order, "of the points not begun")
-        ->check(CLI::IsMember({"as-written", "reversed", "random"}));
+        ->check(CLI::IsMember({"as-written", "reversed", "random", "fastest"}));
     change.add_option("--seed", to.seed, "of a random order")->check(CLI::NonNegativeNumber);
     change.add_option("--priority", to.priority, "higher ones run first")->check(CLI::Range(-100, 100));
     change.add_option("--at", to.start_utc, "of a queued scan: not before this time, in UTC: 2026-11-22T18:05Z");

@@ -122,6 +122,7 @@ std::string progress_text(const api::ScanReport& scan) {
   if (scan.remaining_s) {
     text += fmt::format(", {} to go", duration_text(*scan.remaining_s));
     if (scan.u_remaining_s) text += fmt::format(" (+- {})", duration_text(*scan.u_remaining_s));
+    if (scan.learned_from_scans > 0) text += fmt::format(", predicted from {} scans", scan.learned_from_scans);
   }
   const std::string holds = holds_text(scan);
   if (!holds.empty()) text += ": " + holds;
@@ -163,6 +164,14 @@ Table view(const api::StageReport& stage) {
   return facts.take();
 }
 
+std::string budget_text(const api::BudgetReport& budget) {
+  std::string text = fmt::format("{} of {}: {} of {} directions", duration_text(budget.allowed_s),
+                                 duration_text(budget.wished_s), budget.kept, budget.directions);
+  if (budget.kept < budget.directions) text += fmt::format(", gaps up to {:.1f} deg", budget.widest_gap_deg);
+  if (budget.repeats > 0) text += fmt::format(", {} of {} repeats", budget.kept_repeats, budget.repeats);
+  return text + fmt::format(", signal to noise {:.0f}", budget.target_snr);
+}
+
 Table view(const api::PlanReport& plan) {
   Facts facts;
   facts.add("plan", plan.name)
@@ -176,6 +185,8 @@ Table view(const api::PlanReport& plan) {
       .add("out_of_reach", std::to_string(plan.out_of_reach))
       .add("without_partner", std::to_string(plan.without_partner.size()))
       .add("estimate", fmt::format("{} +- {}", duration_text(plan.estimate_s), duration_text(plan.u_estimate_s)))
+      .add("rests_on", fmt::format("{} finished scans", plan.learned_from_scans))
+      .add("budget", plan.budget ? budget_text(*plan.budget) : "")
       .add("of_which", split_text(plan.estimate))
       .add("as_written", duration_text(plan.walk.as_written_s))
       .add("to_and_fro", duration_text(plan.walk.snaked_s))

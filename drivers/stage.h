@@ -73,6 +73,12 @@ struct StageState {
   return positions;
 }
 
+/// A move that a stage was told.
+struct StartedMove {
+  MotionToken token = 0;
+  std::optional<StageState> seen;  ///< the stage once it was told, where one exchange did both
+};
+
 /// A goniometer stage: arms, sample azimuth, carriage, filter wheel, shutters, and the lamp monitor and sensors on its
 /// bus. Nothing here waits for motion: each call is at most a few link transactions, each with a deadline. Waiting is
 /// `MoveTask`'s (drivers/motion): a pure state machine that is shown `StageState`s.
@@ -88,6 +94,13 @@ class Stage {
   /// not when it has accepted (`accepted_token` says). Errors: as read_state, OutOfLimits (nothing was sent),
   /// DeviceRefused.
   [[nodiscard]] virtual Result<MotionToken> start_move(const MotionTarget& target, Epoch epoch) = 0;
+  /// start_move, with a look that costs no exchange of its own where the wire has one for both. `seen` shows the stage
+  /// after it has accepted or refused: it is left out while the stage does neither. Errors: those of start_move.
+  [[nodiscard]] virtual Result<StartedMove> start_move_and_look(const MotionTarget& target, Epoch epoch) {
+    const Result<MotionToken> token = start_move(target, epoch);
+    if (!token) return failure(token.error());
+    return StartedMove{*token, std::nullopt};
+  }
   /// Homes all axes.
   [[nodiscard]] virtual Result<MotionToken> start_homing(Epoch epoch) = 0;
   [[nodiscard]] virtual Result<void> set_shutters(bool source_open, bool detector_open) = 0;

@@ -70,6 +70,7 @@ void InstantStage::serve(int socket) {
     const int size = modbus_receive(context.get(), request.data());
     if (size < 0) break;
     const std::lock_guard lock(mutex_);
+    act_before_reading(std::span(request).first(static_cast<std::size_t>(size)));
     if (modbus_reply(context.get(), request.data(), size, registers_.get()) < 0) break;
     act();
   }
@@ -82,6 +83,24 @@ void InstantStage::set(Field field, std::int64_t value) {
 
 std::int64_t InstantStage::get(Field field) const {
   return stage::decode(std::span<const std::uint16_t>(registers_->tab_registers, kRegisters), 0, map_.at(field));
+}
+
+// A request that writes and reads shows what came of the writing: the reply writes the same once more.
+void InstantStage::act_before_reading(std::span<const std::uint8_t> request) {
+  constexpr std::size_t kFunction = 7;
+  constexpr std::size_t kWriteFirst = 12;
+  constexpr std::size_t kWriteCount = 14;
+  constexpr std::size_t kValues = 17;
+  constexpr std::uint8_t kWriteAndRead = 0x17;
+  if (request.size() < kValues || request[kFunction] != kWriteAndRead) return;
+  const auto word = [&request](std::size_t at) {
+    return static_cast<std::uint16_t>(request[at] << 8U | request[at + 1]);
+  };
+  const std::size_t first = word(kWriteFirst);
+  const std::size_t count = word(kWriteCount);
+  if (first + count > kRegisters || kValues + 2 * count > request.size()) return;
+  for (std::size_t k = 0; k < count; ++k) registers_->tab_registers[first + k] = word(kValues + 2 * k);
+  act();
 }
 
 // What was commanded since the last request.

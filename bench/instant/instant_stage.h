@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -35,6 +36,7 @@ class InstantStage {
   void set(stage::Field field, std::int64_t value);
   [[nodiscard]] std::int64_t get(stage::Field field) const;
   void act();
+  void act_before_reading(std::span<const std::uint8_t> request);
 
   stage::RegisterMap map_ = stage::own_register_map();
   std::unique_ptr<modbus_mapping_t, void (*)(modbus_mapping_t*)> registers_;

@@ -33,11 +33,11 @@ void add_step(ScanTimes& times, const drivers::StageConfig& stage, const Places&
   times.settle_s += settle_s;
 }
 
-void add_idle(ScanTimes& times, SQLite::Database& store, const std::string& table) {
+void add_idle(ScanTimes& times, SQLite::Database& store, const std::string& table, long scan) {
   SQLite::Statement sum(store,
                         "SELECT total(idle_commit_ns), total(idle_wire_ns), total(idle_device_ns), "
                         "total(idle_hold_ns), total(idle_ns), total(read_ns), count(*) FROM " +
-                            table);
+                            table + " WHERE scan_id = " + std::to_string(scan));
   sum.executeStep();
   const auto part = [&sum](int column) { return kPerSecond * sum.getColumn(column).getDouble(); };
   times.commit_s += part(0);
@@ -49,22 +49,26 @@ void add_idle(ScanTimes& times, SQLite::Database& store, const std::string& tabl
   (table == "visit" ? times.visits : times.items) = sum.getColumn(6).getInt();
 }
 
-double instant_of(SQLite::Database& store, const std::string& kinds) {
-  return kPerSecond *
-         store.execAndGet("SELECT boottime_ns FROM event WHERE kind IN (" + kinds + ") ORDER BY number LIMIT 1")
-             .getDouble();
+double instant_of(SQLite::Database& store, long scan, const std::string& kinds) {
+  return kPerSecond * store
+                          .execAndGet("SELECT boottime_ns FROM event WHERE scan_id = " + std::to_string(scan) +
+                                      " AND kind IN (" + kinds + ") ORDER BY number LIMIT 1")
+                          .getDouble();
 }
 
 }  // namespace
 
-ScanTimes read_scan_times(const std::string& store_file, const drivers::StageConfig& stage) {
+ScanTimes read_scan_times(const std::string& store_file, long scan, const drivers::StageConfig& stage) {
   SQLite::Database store(store_file, SQLite::OPEN_READONLY);
   ScanTimes times;
-  times.wall_s = instant_of(store, "'scan-done', 'scan-finished-early'") - instant_of(store, "'scan-running'");
+  times.wall_s =
+      instant_of(store, scan, "'scan-done', 'scan-finished-early'") - instant_of(store, scan, "'scan-running'");
   SQLite::Statement readings(store,
                              "SELECT exposure_ns, open_theta_i_counts, open_theta_r_counts, open_phi_r_counts, "
-                             "open_phi_i_counts, open_carriage_counts, open_filter_wheel_counts FROM reading "
-                             "ORDER BY reading_id");
+                             "open_phi_i_counts, open_carriage_counts, open_filter_wheel_counts FROM reading r "
+                             "LEFT JOIN attempt a USING (attempt_id) LEFT JOIN visit v USING (visit_id) WHERE "
+                             "coalesce(a.scan_id, v.scan_id) = " +
+                                 std::to_string(scan) + " ORDER BY reading_id");
   std::optional<Places> from;
   while (readings.executeStep()) {
     ++times.frames;
@@ -77,8 +81,8 @@ ScanTimes read_scan_times(const std::string& store_file, const drivers::StageCon
     if (from) add_step(times, stage, *from, to);
     from = to;
   }
-  add_idle(times, store, "attempt");
-  add_idle(times, store, "visit");
+  add_idle(times, store, "attempt", scan);
+  add_idle(times, store, "visit", scan);
   return times;
 }
 

@@ -24,7 +24,7 @@ struct ScanTimes {
   [[nodiscard]] double must_s() const { return move_s + settle_s + expose_s; }
 };
 
-/// Reads a store's only scan. Throws on a file that is none.
-[[nodiscard]] ScanTimes read_scan_times(const std::string& store, const drivers::StageConfig& stage);
+/// Reads one scan of a store. Throws on a file that is none.
+[[nodiscard]] ScanTimes read_scan_times(const std::string& store, long scan, const drivers::StageConfig& stage);
 
 }  // namespace gonio::bench

@@ -12,6 +12,7 @@
 #include "daemon/app/job_desk.h"
 #include "daemon/app/plan_desk.h"
 #include "daemon/app/plan_outlook.h"
+#include "daemon/app/rest_order.h"
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
 #include "daemon/app/version_desk.h"
@@ -95,7 +96,7 @@ Result<ChangeScan> change_of(std::int64_t scan, const api::ChangeRequest& reques
   if (!request.order) return change;
   change.order = rest_order_from_name(*request.order);
   if (change.order) return change;
-  return failure(no_such("order", *request.order, "as-written, reversed, random"));
+  return failure(no_such("order", *request.order, "as-written, reversed, random, fastest"));
 }
 
 NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, const std::string& key,
@@ -105,7 +106,7 @@ NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, con
   scan.name = checked.plan.name;
   scan.sample = checked.plan.sample;
   scan.isotropic = checked.plan.isotropic;
-  scan.policy = policy_of(checked.plan);
+  scan.policy = policy_of(checked.plan, checked.planned);
   scan.plan_text = submission.plan;
   scan.plan_file = submission.plan_file;
   scan.plan_parts = submission.parts;
@@ -127,11 +128,23 @@ void add_outlook(api::PlanReport& report, const CheckedPlan& checked, const Inst
                  .snaked_s = in_seconds(order.snaked)};
   if (!checked.reference.standard) return;
   const PlanOutlook ahead = outlook(checked.plan, checked.planned, instrument, *checked.reference.standard);
-  report.u_estimate_s = ahead.u_estimate_s;
   report.visits = ahead.visits;
   report.disk_bytes = ahead.disk_bytes;
   report.median_relative_u = ahead.median_relative_u;
   report.worst_relative_u = ahead.worst_relative_u;
+  report.relative_u = ahead.relative_u;
+  report.relative_u.resize(std::min(kOrderShown, report.relative_u.size()));
+}
+
+api::BudgetReport budget_report(const BudgetChoice& choice) {
+  return {.allowed_s = in_seconds(choice.allowed),
+          .wished_s = in_seconds(choice.wished),
+          .directions = choice.directions,
+          .kept = choice.kept,
+          .repeats = choice.repeats,
+          .kept_repeats = choice.kept_repeats,
+          .target_snr = choice.target_snr,
+          .widest_gap_deg = in_degrees(choice.widest_gap)};
 }
 
 api::PlanReport plan_report(const CheckedPlan& checked, const Instrument& instrument) {
@@ -147,6 +160,9 @@ api::PlanReport plan_report(const CheckedPlan& checked, const Instrument& instru
   report.items = checked.planned.items;
   report.estimate = time_split(checked.planned.estimate);
   report.estimate_s = report.estimate.total_s();
+  report.u_estimate_s = checked.planned.u_estimate_s;
+  report.learned_from_scans = checked.planned.experience.scans;
+  if (checked.planned.budget) report.budget = budget_report(*checked.planned.budget);
   const std::size_t shown = std::min(kOrderShown, checked.planned.order.size());
   report.order.assign(checked.planned.order.begin(),
                       checked.planned.order.begin() + static_cast<std::ptrdiff_t>(shown));
@@ -228,7 +244,7 @@ void DaemonService::submit_scan(const api::PlanSubmission& submission, const std
   if (const auto allowed = check_priority(submission.priority); !allowed) return reply(failure(allowed.error()));
   const auto start = start_from(submission.start_utc);
   if (!start) return reply(failure(start.error()));
-  Result<CheckedPlan> checked = daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now());
+  Result<CheckedPlan> checked = checked_plan(submission);
   if (!checked) return reply(failure(checked.error()));
   NewScan scan = new_scan(std::move(*checked), submission, idempotency_key, who, parts_.instrument);
   scan.turn = {.priority = submission.priority, .preempts = submission.preempt, .start = *start};
@@ -262,6 +278,11 @@ void DaemonService::change_rest(std::int64_t scan, const api::ChangeRequest& req
   if (!start) return reply(failure(start.error()));
   change->start = *start;
   if (const auto error = is_over_for(scan, ScanAsk::Change)) return reply(failure(*error));
+  if (change->order == RestOrder::Fastest) {
+    auto found = ask_store([&](StoreReader& store) { return fastest_rest(store, scan, parts_.instrument); });
+    if (!found) return reply(failure(found.error()));
+    change->fastest = std::move(*found);
+  }
   command(who, std::move(*change), std::move(reply));
 }
 
@@ -379,10 +400,17 @@ Result<api::StageReport> DaemonService::stage() {
 }
 
 Result<api::PlanReport> DaemonService::check_plan(const api::PlanSubmission& submission) {
-  const Result<CheckedPlan> checked =
-      daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now());
+  const Result<CheckedPlan> checked = checked_plan(submission);
   if (!checked) return failure(checked.error());
   return plan_report(*checked, parts_.instrument);
+}
+
+// A store that cannot be read teaches nothing; the plan is checked all the same.
+Result<CheckedPlan> DaemonService::checked_plan(const api::PlanSubmission& submission) {
+  const Result<TimeExperience> learned =
+      ask_store([this](StoreReader& store) { return store.time_experience(parts_.instrument.sha256); });
+  return daemon::check_plan(submission, parts_.instrument, parts_.shelf, parts_.clock.utc_now(),
+                            learned.value_or(TimeExperience{}));
 }
 
 Result<api::ScanList> DaemonService::scans() {

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "daemon/analysis/analysis_desk.h"
 #include "daemon/app/engine.h"
+#include "daemon/app/plan_desk.h"
 #include "daemon/app/reference_shelf.h"
 #include "daemon/http/service.h"
 #include "daemon/sequencer/scan_machine.h"
@@ -80,6 +81,8 @@ class DaemonService final : public Service {
   template <class Ask>
   auto ask_store(Ask ask) -> decltype(ask(std::declval<StoreReader&>()));
   void command(const std::string& who, Verb verb, Reply<api::CommandReport> reply);
+  /// By what past scans have taught. Errors: those of daemon::check_plan.
+  [[nodiscard]] Result<CheckedPlan> checked_plan(const api::PlanSubmission& submission);
   /// Why a scan takes nothing of the kind any more, by the store; a store that cannot be read does not stand in the
   /// way.
   [[nodiscard]] std::optional<Error> is_over_for(std::int64_t scan, ScanAsk ask);

@@ -279,7 +279,8 @@ std::optional<Instant> Engine::look_at_disk(Instant now) {
 
 void Engine::publish(const EventRecord& event) {
   const bool is_of_an_item = event.kind.starts_with("item-");
-  is_of_an_item ? log_debug(event_sentence(event)) : log_info(event_sentence(event));
+  if (!is_of_an_item) log_info(event_sentence(event));
+  if (is_of_an_item && log_shows_debug()) log_debug(event_sentence(event));
   on_event_(event);
   if (!asks_for_brdf(event)) return;
   const AskedVersions asked = asked_versions_of(event);

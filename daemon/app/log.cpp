@@ -17,6 +17,9 @@ void start_log(const std::string& level) {
 void log_debug(const std::string& sentence) {
   spdlog::debug("{}", sentence);
 }
+bool log_shows_debug() {
+  return spdlog::should_log(spdlog::level::debug);
+}
 void log_info(const std::string& sentence) {
   spdlog::info("{}", sentence);
 }

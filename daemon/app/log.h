@@ -8,6 +8,8 @@ namespace gonio::daemon {
 /// `level`: "debug", "info", "warning" or "error". To standard error.
 void start_log(const std::string& level);
 void log_debug(const std::string& sentence);
+/// Whether anybody would see it: a sentence takes longer to make than a reading to store.
+[[nodiscard]] bool log_shows_debug();
 void log_info(const std::string& sentence);
 void log_warning(const std::string& sentence);
 void log_error(const std::string& sentence);

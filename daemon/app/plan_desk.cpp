@@ -13,11 +13,11 @@ Error at_the_plans_standard(Error error, const std::string& file) {
 }  // namespace
 
 Result<CheckedPlan> check_plan(const api::PlanSubmission& submission, const Instrument& instrument,
-                               const ReferenceShelf& shelf, UtcTime today) {
+                               const ReferenceShelf& shelf, UtcTime today, const TimeExperience& experience) {
   const std::string file = submission.plan_file.empty() ? "plan.toml" : submission.plan_file;
   Result<api::Plan> plan = api::parse_plan(submission.plan, file, submission.parts);
   if (!plan) return failure(plan.error());
-  Result<PlannedScan> planned = expand(*plan, instrument);
+  Result<PlannedScan> planned = expand(*plan, instrument, experience);
   if (!planned) {
     Error error = planned.error();
     if (error.where && error.where->file.empty()) error.where->file = file;

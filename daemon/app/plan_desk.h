@@ -20,6 +20,7 @@ struct CheckedPlan {
 /// The one check of plans, for the dry run and for the run. Errors: those of parse_plan, expand and the reference
 /// shelf; ReferenceExpired, ReferenceOutOfReach.
 [[nodiscard]] Result<CheckedPlan> check_plan(const api::PlanSubmission& submission, const Instrument& instrument,
-                                             const ReferenceShelf& shelf, UtcTime today);
+                                             const ReferenceShelf& shelf, UtcTime today,
+                                             const TimeExperience& experience);
 
 }  // namespace gonio::daemon

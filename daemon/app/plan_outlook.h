@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "calibration/reference_standard.h"
 #include "daemon/config/instrument.h"
 #include "daemon/planner/planned_scan.h"
@@ -11,16 +14,15 @@ namespace gonio::daemon {
 struct PlanOutlook {
   double median_relative_u = 0.0;  ///< U / f at k = 2, over the points that are not blocked
   double worst_relative_u = 0.0;
-  double u_estimate_s = 0.0;    ///< standard uncertainty of the estimated time
-  std::int64_t visits = 0;      ///< of the dark, the standard and the sample
-  std::int64_t disk_bytes = 0;  ///< with one frame an item, frames themselves not kept
+  std::vector<double> relative_u;  ///< of each, in the order of measurement
+  std::int64_t visits = 0;         ///< of the dark, the standard and the sample
+  std::int64_t disk_bytes = 0;     ///< with one frame an item, frames themselves not kept
 };
 
-/// Taken into U: the certificate, the shape table's modes and interpolation, the noise that `target_snr` allows in both
-/// readings, placing and lamp. Left out: what depends on the sample (slopes along the angles, signals too weak for the
-/// target) and on the scan's own darks. So it is what the best of samples would have. The time's uncertainty is that of
-/// the exposures, which are chosen by signals nobody knows yet: any between the shortest and the longest, evenly in
-/// their logarithm; and two per cent of motion.
+/// Taken into U: the certificate, the shape table's modes and interpolation, the noise of both readings, placing and
+/// lamp. The noise is what `target_snr` allows; where the plan says about what the sample reflects and past scans say
+/// what the standard looks like, that of the exposures that the run would choose, signals too weak for the target
+/// included. Left out: what depends on the sample's slopes along the angles, and on the scan's own darks.
 [[nodiscard]] PlanOutlook outlook(const api::Plan& plan, const PlannedScan& planned, const Instrument& instrument,
                                   const calibration::ReferenceStandard& standard);
 

@@ -113,6 +113,7 @@ void add_progress(api::ScanReport& report, const SequencerStatus& status, Instan
   const Progress& progress = *status.active;
   report.doing = status.doing;
   report.holds = hold_reports(progress.holds, now);
+  report.learned_from_scans = progress.learned_from;
   if (!progress.remaining) return;
   report.remaining_s = in_seconds(*progress.remaining);
   report.u_remaining_s = in_seconds(progress.u_remaining);

@@ -43,7 +43,10 @@ SequencerStatus SequencerDesk::status() const {
 }
 
 void SequencerDesk::hand_on(Instant now) {
-  for (Request& request : sequencer_.take_requests()) {
+  std::vector<Request> requests = sequencer_.take_requests();
+  // The detector's first: its thread is longer on its way to the light than the stage's to its first look at the gate.
+  std::ranges::stable_partition(requests, [](const Request& r) { return std::holds_alternative<DetectorRequest>(r); });
+  for (Request& request : requests) {
     std::visit([&](auto& one) { send(std::move(one), now); }, request);
   }
   for (const CommandReply& reply : sequencer_.take_replies()) ports_.reply(reply);

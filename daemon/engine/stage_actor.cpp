@@ -66,12 +66,25 @@ std::optional<Instant> StageActor::step(Instant now) {
 }
 
 Result<drivers::StageState> StageActor::look() {
+  after_gate_.reset();
   Result<drivers::StageState> state = stage_.read_state();
-  if (!state) return state;
-  if (boot_counter_ && *boot_counter_ != state->boot_counter) slack_taken_up_.fill(false);
-  boot_counter_ = state->boot_counter;
-  note_rest(*state);
+  if (state) note(*state);
   return state;
+}
+
+// The look that ended an exposure is as good as another one a moment later: what happens between either and the
+// command is found by the command's epoch, the stop count and the boot counter.
+Result<drivers::StageState> StageActor::look_before_a_move(Instant now) {
+  std::optional<drivers::StageState> seen = std::exchange(after_gate_, std::nullopt);
+  if (!seen || now - seen->at > kFresh) return look();
+  seen->at = now;
+  return *std::move(seen);
+}
+
+void StageActor::note(const drivers::StageState& seen) {
+  if (boot_counter_ && *boot_counter_ != seen.boot_counter) slack_taken_up_.fill(false);
+  boot_counter_ = seen.boot_counter;
+  note_rest(seen);
 }
 
 // Kept until another motion is accepted: an axis that moves by itself afterwards is found however late it is looked at.
@@ -106,13 +119,14 @@ Result<void> StageActor::check_rest(const MoveTo& request, const drivers::StageS
 
 void StageActor::begin(const StageRequest& request, Instant now) {
   Result<Job> started = failure(Error{});
-  if (const auto* move = std::get_if<MoveTo>(&request)) started = start(*move);
+  if (const auto* move = std::get_if<MoveTo>(&request)) started = start(*move, now);
   if (const auto* home = std::get_if<Home>(&request)) started = start(*home);
   if (const auto* reset = std::get_if<ResetStage>(&request)) started = start(*reset);
   if (const auto* gate = std::get_if<WatchGate>(&request)) {
     GateWatch watch(config_, *gate, boot_counter_, now);
     const Instant first = watch.first_look();
-    started = Job{gate->ticket, {watch_of(std::move(watch))}, first};
+    started =
+        Job{.ticket = gate->ticket, .watches = {watch_of(std::move(watch))}, .next_look = first, .is_of_a_gate = true};
   }
   if (started) {
     job_ = std::move(*started);
@@ -121,10 +135,10 @@ void StageActor::begin(const StageRequest& request, Instant now) {
   }
 }
 
-Result<StageActor::Job> StageActor::start(const MoveTo& request) {
-  const Result<drivers::StageState> before = look();
+Result<StageActor::Job> StageActor::start(const MoveTo& request, Instant now) {
+  const Result<drivers::StageState> before = look_before_a_move(now);
   if (!before) return failure(before.error());
-  Job job{.ticket = request.ticket, .watches = {}, .next_look = before->at};
+  Job job{.ticket = request.ticket, .next_look = before->at};
   if (!names_an_axis(request.target)) {
     GONIO_TRY(add_shutters(job, request, *before));
     return job;
@@ -169,10 +183,11 @@ Result<void> StageActor::start_leg(Job& job, const drivers::StageState& before) 
   }
   job.legs.pop_front();
   for (std::size_t a = 0; a < leg.size(); ++a) slack_taken_up_[a] = slack_taken_up_[a] && !leg[a];
-  const Result<drivers::MotionToken> token = stage_.start_move(leg, job.epoch);
-  if (!token) return failure(token.error());
+  Result<drivers::StartedMove> started = stage_.start_move_and_look(leg, job.epoch);
+  if (!started) return failure(started.error());
+  job.seen = std::move(started->seen);
   using Ending = drivers::MoveTask::Ending;
-  job.watches.back() = watch_of(drivers::MoveTask(config_, before, leg, *token, job.epoch, before.at,
+  job.watches.back() = watch_of(drivers::MoveTask(config_, before, leg, started->token, job.epoch, before.at,
                                                   job.legs.empty() ? Ending::Settle : Ending::Rest));
   job.next_look = before.at;
   return {};
@@ -197,17 +212,25 @@ Result<StageActor::Job> StageActor::start(const Home& request) {
   slack_taken_up_.fill(false);
   const Result<drivers::MotionToken> token = stage_.start_homing(request.epoch);
   if (!token) return failure(token.error());
-  return Job{
-      request.ticket, {watch_of(drivers::HomingTask(config_, *before, *token, request.epoch, before->at))}, before->at};
+  return Job{.ticket = request.ticket,
+             .watches = {watch_of(drivers::HomingTask(config_, *before, *token, request.epoch, before->at))},
+             .next_look = before->at};
 }
 
 Result<StageActor::Job> StageActor::start(const ResetStage& request) {
   GONIO_TRY(stage_.reset(request.epoch));
-  return Job{request.ticket, {}, {}};  // no condition: the state after it is the answer
+  return Job{.ticket = request.ticket};  // no condition: the state after it is the answer
+}
+
+Result<drivers::StageState> StageActor::look_for_the_job() {
+  if (!job_->seen) return look();
+  const drivers::StageState seen = *std::exchange(job_->seen, std::nullopt);
+  note(seen);
+  return seen;
 }
 
 void StageActor::advance() {
-  const Result<drivers::StageState> seen = look();
+  const Result<drivers::StageState> seen = look_for_the_job();
   Result<bool> all_done = seen ? Result<bool>(true) : failure(seen.error());
   std::optional<Instant> next;
   for (Watch& watch : job_->watches) {
@@ -236,6 +259,7 @@ void StageActor::finish(const Result<drivers::StageState>& state) {
     if (job_->ends[a]) slack_taken_up_[a] = true;
   }
   const Ticket ticket = job_->ticket;
+  if (state && job_->is_of_a_gate) after_gate_ = *state;
   job_.reset();
   post_({ticket, state});
 }

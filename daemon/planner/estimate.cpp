@@ -3,12 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <numeric>
+#include <optional>
 
-#include "daemon/planner/exposure_ladder.h"
+#include "daemon/planner/light_forecast.h"
 #include "daemon/planner/planner.h"
+#include "daemon/planner/visit_place.h"
 #include "drivers/motion/route.h"
 #include "drivers/motion/route_time.h"
 #include "drivers/motion/travel_time.h"
@@ -17,11 +19,13 @@ namespace gonio::daemon {
 
 namespace {
 
+using calibration::Target;
 using stage::Axis;
 
-// Of one frame beyond its exposure: transfer, reduction, the look at the gate. Only the estimate uses it.
+// Of each frame after the first, beyond its exposure: transfer, reduction, the look at the gate.
 constexpr Duration kReadTime = std::chrono::milliseconds(5);
-constexpr int kDarkFrames = 4;  // of each rung, in the estimate
+constexpr int kDarkFrames = 4;  // of each rung
+constexpr double kVisitSlack = 0.2;
 
 Error at_point(const ScanPoint& point, Error error) {
   const Geometry& g = point.geometry;
@@ -32,52 +36,116 @@ Error at_point(const ScanPoint& point, Error error) {
   return error;
 }
 
+// One kind of visit, and when it was last made.
+struct VisitDue {
+  Duration every{};
+  calibration::Target target = calibration::Target::Reference;
+  Duration last{};
+  [[nodiscard]] bool is_wanted() const { return every > Duration::zero(); }
+};
+
 class Walk {
  public:
-  Walk(const api::Plan& plan, const Instrument& instrument)
-      : plan_(plan), instrument_(instrument), standing_(home_position(instrument)) {
-    const std::vector<Duration> ladder = exposure_ladder(instrument.detector, plan.max_time);
-    exposure_ = seconds(std::sqrt(in_seconds(ladder.front()) * in_seconds(ladder.back())));
-    if (!plan.exposures.empty()) {
-      exposure_ = std::accumulate(plan.exposures.begin(), plan.exposures.end(), Duration{});
-      frames_ = static_cast<int>(plan.exposures.size());
-    }
-    dark_exposures_ = std::accumulate(ladder.begin(), ladder.end(), Duration{});
-    rungs_ = static_cast<int>(ladder.size());
-    visit_dark();
-  }
+  Walk(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points,
+       const TimeExperience& experience)
+      : plan_(plan),
+        instrument_(instrument),
+        experience_(experience),
+        forecast_(plan, instrument, experience),
+        visits_at_(points[static_cast<std::size_t>(visit_point(points))]),
+        standing_(home_position(instrument)),
+        due_{{{.every = plan.reference_every, .target = Target::Reference},
+              {.every = plan.check_every, .target = Target::Sample}}} {}
 
-  Result<void> visit(const ScanPoint& point, Length carriage) {
-    auto target = axis_targets(point.geometry, point.wavelength, instrument_, standing_);
-    assert(target);  // the planner has checked every direction
-    (*target)[stage::index_of(Axis::Carriage)] = in_millimetres(carriage);
-    const auto step = step_time(instrument_, standing_, *target);
-    if (!step) return failure(at_point(point, step.error()));
-    time_.move += step->move;
-    time_.settle += step->settle;
-    time_.expose += exposure_;
-    time_.read += frames_ * kReadTime;
-    for (std::size_t a = 0; a < stage::kAxisCount; ++a) standing_[a] = (*target)[a].value_or(standing_[a]);
-    if (plan_.dark_every > Duration::zero() && time_.total() - last_dark_ >= plan_.dark_every) visit_dark();
+  // Each run begins with a dark of the whole ladder, then a visit of each kind.
+  Result<void> begin() {
+    expose_dark(0, forecast_.rungs().size() - 1);
+    for (VisitDue& due : due_) {
+      if (due.is_wanted()) GONIO_TRY(visit(due));
+    }
     return {};
   }
 
-  void visit_dark() {
-    time_.expose += kDarkFrames * dark_exposures_;
-    time_.read += kDarkFrames * rungs_ * kReadTime;
-    last_dark_ = time_.total();
+  Result<void> measure(const ScanPoint& point, Target target) {
+    GONIO_TRY(make_visits(target));
+    GONIO_TRY(go_to(point, target));
+    take(forecast_.of(point, target));
+    time_.read += seconds(experience_.beyond_s.value);
+    return {};
+  }
+
+  Result<void> end() {
+    for (VisitDue& due : due_) {
+      if (due.is_wanted()) GONIO_TRY(visit(due));
+    }
+    visit_dark();
+    return {};
   }
 
   [[nodiscard]] const TimeParts& time() const { return time_; }
 
  private:
+  // A dark comes when it is due; the others wait up to a fifth of their period for the carriage to be on their side.
+  Result<void> make_visits(Target side) {
+    const Duration now = time_.total();
+    if (plan_.dark_every > Duration::zero() && now - last_dark_ >= plan_.dark_every) visit_dark();
+    for (VisitDue& due : due_) {
+      if (!due.is_wanted() || now - due.last < due.every) continue;
+      const bool may_wait = now - due.last < seconds(in_seconds(due.every) * (1.0 + kVisitSlack));
+      if (due.target == side || !may_wait) GONIO_TRY(visit(due));
+    }
+    return {};
+  }
+
+  Result<void> visit(VisitDue& due) {
+    GONIO_TRY(go_to(visits_at_, due.target));
+    take(forecast_.of_visit(visits_at_, due.target));
+    time_.read += seconds(experience_.beyond_s.value);
+    due.last = time_.total();
+    return {};
+  }
+
+  Result<void> go_to(const ScanPoint& point, Target side) {
+    auto target = axis_targets(point.geometry, point.wavelength, instrument_, standing_);
+    assert(target);  // the planner has checked every direction
+    const CarriagePositions& carriage = instrument_.carriage;
+    (*target)[stage::index_of(Axis::Carriage)] =
+        in_millimetres(side == Target::Sample ? carriage.sample : carriage.reference);
+    const auto step = step_time(instrument_, standing_, *target);
+    if (!step) return failure(at_point(point, step.error()));
+    time_.move += seconds(in_seconds(step->move) * experience_.motion.value);
+    time_.settle += seconds(in_seconds(step->settle) * experience_.motion.value);
+    for (std::size_t a = 0; a < stage::kAxisCount; ++a) standing_[a] = (*target)[a].value_or(standing_[a]);
+    return {};
+  }
+
+  void take(const LightForecast::Light& light) {
+    time_.expose += light.exposure;
+    time_.read += (light.frames - 1) * kReadTime;
+    if (!light.lowest) return;
+    lowest_ = std::min(lowest_.value_or(*light.lowest), *light.lowest);
+    highest_ = std::max(highest_.value_or(*light.highest), *light.highest);
+  }
+
+  void visit_dark() { expose_dark(lowest_.value_or(0), highest_.value_or(forecast_.rungs().size() - 1)); }
+
+  void expose_dark(std::size_t lowest, std::size_t highest) {
+    for (std::size_t rung = lowest; rung <= highest; ++rung) {
+      time_.expose += kDarkFrames * forecast_.rungs()[rung];
+      time_.read += kDarkFrames * kReadTime;
+    }
+    last_dark_ = time_.total();
+  }
+
   const api::Plan& plan_;
   const Instrument& instrument_;
+  const TimeExperience& experience_;
+  const LightForecast forecast_;
+  const ScanPoint& visits_at_;
   stage::PerAxis<double> standing_;
-  Duration exposure_{};
-  Duration dark_exposures_{};
-  int rungs_ = 1;
-  int frames_ = 1;  // of an item
+  std::array<VisitDue, 2> due_;
+  std::optional<std::size_t> lowest_;  ///< rungs in use, as far as they are foreseen
+  std::optional<std::size_t> highest_;
   TimeParts time_;
   Duration last_dark_{};
 };
@@ -104,23 +172,40 @@ Result<StepTime> step_time(const Instrument& instrument, const stage::PerAxis<do
 }
 
 Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points,
-                           std::span<const std::int32_t> order) {
-  Walk walk(plan, instrument);
+                           std::span<const std::int32_t> order, const TimeExperience& experience) {
+  Walk walk(plan, instrument, points, experience);
+  GONIO_TRY(walk.begin());
   const Duration pass = plan.block / 2;  // there and back: partners lie within the whole block
   for (std::size_t first = 0; first < order.size();) {
     const Duration started = walk.time().total();
     std::size_t end = first;
     while (end < order.size() && (end == first || walk.time().total() - started < pass)) {
-      GONIO_TRY(walk.visit(points[static_cast<std::size_t>(order[end])], instrument.carriage.sample));
+      GONIO_TRY(walk.measure(points[static_cast<std::size_t>(order[end])], Target::Sample));
       ++end;
     }
     for (std::size_t k = end; k-- > first;) {
-      GONIO_TRY(walk.visit(points[static_cast<std::size_t>(order[k])], instrument.carriage.reference));
+      GONIO_TRY(walk.measure(points[static_cast<std::size_t>(order[k])], Target::Reference));
     }
     first = end;
   }
-  walk.visit_dark();
+  GONIO_TRY(walk.end());
   return walk.time();
+}
+
+double u_of_estimate_s(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned) {
+  constexpr double kForeseen = 0.1;  // of light that is foreseen from a stated reflectance: relative
+  const LightForecast forecast(plan, instrument, planned.experience);
+  const auto items = static_cast<double>(planned.items);
+  const bool is_known = std::ranges::all_of(planned.order, [&](std::int32_t point) {
+    return forecast.is_known(planned.points[static_cast<std::size_t>(point)]);
+  });
+  const bool is_foreseen = is_known && forecast.u_guess_s() > 0.0;
+  const double u_light_s = is_foreseen ? kForeseen * in_seconds(planned.estimate.expose)
+                           : is_known  ? 0.0
+                                       : items * forecast.u_guess_s();
+  const double motion_s = in_seconds(planned.estimate.move + planned.estimate.settle);
+  const TimeExperience& experience = planned.experience;
+  return std::hypot(u_light_s, motion_s * experience.motion.u / experience.motion.value, items * experience.beyond_s.u);
 }
 
 }  // namespace gonio::daemon

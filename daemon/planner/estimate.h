@@ -10,11 +10,17 @@
 
 namespace gonio::daemon {
 
-/// The time of a scan of `points` (by index) in this order, dark visits included, by the instrument's own speeds. Every
-/// direction must be within the axes' limits (asserted). Detours and turning points count. Errors: Blocked (a point
-/// that the arms cannot come to from the one before, with the place on the path).
+/// The time of a scan of `points` (by index) in this order, all visits included, by the instrument's own speeds and
+/// what past scans took beside them; light by `LightForecast`. Every direction must be within the axes' limits
+/// (asserted). Detours and turning points count. In `read` stands what an item takes beyond motion and light. Errors:
+/// Blocked (a point that the arms cannot come to from the one before, with the place on the path).
 [[nodiscard]] Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument,
-                                         std::span<const ScanPoint> points, std::span<const std::int32_t> order);
+                                         std::span<const ScanPoint> points, std::span<const std::int32_t> order,
+                                         const TimeExperience& experience = {});
+
+/// The standard uncertainty of a scan's `estimate`: that of the light nobody has seen yet, and the scatter of past
+/// scans in motion and in what an item takes beyond.
+[[nodiscard]] double u_of_estimate_s(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned);
 
 /// How long one axis needs from rest to rest; without settling.
 [[nodiscard]] Duration travel_time(const drivers::AxisConfig& axis, double way);

@@ -102,11 +102,12 @@ std::vector<std::int32_t> searched_walk(std::span<const Place> places, const Ste
 
 class Contest {
  public:
-  Contest(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points)
-      : plan_(plan), instrument_(instrument), points_(points) {}
+  Contest(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points,
+          const TimeExperience& experience)
+      : plan_(plan), instrument_(instrument), points_(points), experience_(experience) {}
 
   void enter(std::vector<std::int32_t> order) {
-    const auto time = estimate(plan_, instrument_, points_, order);
+    const auto time = estimate(plan_, instrument_, points_, order, experience_);
     if (!time) {
       if (!best_) best_ = failure(time.error());
       return;
@@ -120,6 +121,7 @@ class Contest {
   const api::Plan& plan_;
   const Instrument& instrument_;
   std::span<const ScanPoint> points_;
+  const TimeExperience& experience_;
   Result<MeasuringOrder> best_ = failure(Error{});
 };
 
@@ -160,22 +162,36 @@ std::vector<std::int32_t> snaked_order(const Instrument& instrument, std::span<c
   return sites.order_of(best_snake(sites.places(), StepPrice(instrument, sites.places())));
 }
 
-Result<MeasuringOrder> measuring_order(const api::Plan& plan, const Instrument& instrument,
-                                       std::span<const ScanPoint> points) {
+namespace {
+
+Result<MeasuringOrder> order_by(const api::Plan& plan, const Instrument& instrument, std::span<const ScanPoint> points,
+                                const TimeExperience& experience, std::size_t most_searched) {
   std::vector<std::int32_t> written = as_written(points);
-  Contest contest(plan, instrument, points);
+  Contest contest(plan, instrument, points, experience);
   if (plan.order == api::OrderStrategy::Random) shuffle(written, plan.order_seed);
   if (plan.order != api::OrderStrategy::Fastest) {
     contest.enter(std::move(written));
     return std::move(contest).best();
   }
   contest.enter(snaked_order(instrument, points));
-  if (written.size() <= kMostSearched) {
+  if (written.size() <= most_searched) {
     auto places = places_from_home(instrument, points, written);
     enter_searched(contest, instrument, points, written, std::move(places));
   }
   if (!contest.has_one()) contest.enter(std::move(written));
   return std::move(contest).best();
+}
+
+}  // namespace
+
+Result<MeasuringOrder> measuring_order(const api::Plan& plan, const Instrument& instrument,
+                                       std::span<const ScanPoint> points, const TimeExperience& experience) {
+  return order_by(plan, instrument, points, experience, kMostSearched);
+}
+
+Result<MeasuringOrder> quick_order(const api::Plan& plan, const Instrument& instrument,
+                                   std::span<const ScanPoint> points, const TimeExperience& experience) {
+  return order_by(plan, instrument, points, experience, 0);
 }
 
 }  // namespace gonio::daemon

@@ -22,7 +22,12 @@ struct MeasuringOrder {
 /// finds sooner; so never slower than the boustrophedon. Random: by the plan's seed. Deterministic. Errors: Blocked (no
 /// order was found in which the arms can come to each point from the one before; the place on the path).
 [[nodiscard]] Result<MeasuringOrder> measuring_order(const api::Plan& plan, const Instrument& instrument,
-                                                     std::span<const ScanPoint> points);
+                                                     std::span<const ScanPoint> points,
+                                                     const TimeExperience& experience = {});
+
+/// The same without the search: the best boustrophedon stands for fastest. For plans that are tried out.
+[[nodiscard]] Result<MeasuringOrder> quick_order(const api::Plan& plan, const Instrument& instrument,
+                                                 std::span<const ScanPoint> points, const TimeExperience& experience);
 
 /// The best boustrophedon alone: what others are compared with.
 [[nodiscard]] std::vector<std::int32_t> snaked_order(const Instrument& instrument, std::span<const ScanPoint> points);

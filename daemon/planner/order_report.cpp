@@ -102,7 +102,7 @@ double two_cheapest_s(std::span<const Place> places, const StepPrice& price) {
 
 Duration whole_scan(const api::Plan& plan, const Instrument& instrument, const PlannedScan& planned,
                     std::span<const std::int32_t> order) {
-  const auto time = estimate(plan, instrument, planned.points, order);
+  const auto time = estimate(plan, instrument, planned.points, order, planned.experience);
   return time ? time->total() : Duration::zero();
 }
 

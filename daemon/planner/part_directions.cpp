@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
-#include "protocol/api/gauss_rings.h"
+#include "daemon/planner/gauss_rings.h"
 
 namespace gonio::daemon {
 
@@ -25,6 +26,33 @@ Angle rounded(Angle a) {
 int steps_in(double width, double spacing) {
   return static_cast<int>(std::ceil(width / spacing - 1e-9));
 }
+
+// Even azimuths of a ring that are a part of all, from few to all: by strides that divide the one before. Half a ring's
+// stand in the middle of their sectors, also those of fewer and wider ones: odd factors only.
+class RingLevels {
+ public:
+  RingLevels(int around, bool is_half) : is_half_(is_half) {
+    constexpr int kFewest = 3;
+    for (int stride = 1, rest = around; rest >= kFewest;) {
+      strides_.push_back(stride);
+      int factor = is_half ? 3 : 2;
+      while (factor <= rest && rest % factor != 0) factor += is_half ? 2 : 1;
+      if (factor > rest) break;
+      stride *= factor;
+      rest /= factor;
+    }
+    if (strides_.empty()) strides_.push_back(1);
+    std::ranges::reverse(strides_);
+  }
+  [[nodiscard]] int level_of(int azimuth) const {
+    const auto stands = [&](int stride) { return azimuth % stride == (is_half_ ? (stride - 1) / 2 : 0); };
+    return static_cast<int>(std::ranges::find_if(strides_, stands) - strides_.begin());
+  }
+
+ private:
+  bool is_half_;
+  std::vector<int> strides_;  // the widest first; the last is 1
+};
 
 struct Direction {
   Angle theta;
@@ -59,9 +87,10 @@ class Directions {
   }
 
  private:
-  Result<void> give(Direction r, bool may_be_out_of_reach = false) {
+  Result<void> give(Direction r, bool may_be_out_of_reach = false, int level = -1) {
     return take_({.geometry = {.theta_i = theta_i_, .phi_i = phi_i_, .theta_r = r.theta, .phi_r = r.phi},
-                  .may_be_out_of_reach = may_be_out_of_reach});
+                  .may_be_out_of_reach = may_be_out_of_reach,
+                  .level = level});
   }
   [[nodiscard]] Angle as_meant(Angle phi_r) const { return is_relative_ ? phi_r + phi_i_ : phi_r; }
 
@@ -101,9 +130,10 @@ class Directions {
                       .where = InputLocation{part_.where.file, part_.where.line, part_.where.field + ".rings.to_deg"}});
     }
     const Angle step = (rings.is_half ? 1.0 : 2.0) * kHalfTurn / rings.around;
-    for (const api::GaussRing& ring : api::gauss_rings(rings.rings, to)) {
+    const RingLevels levels(rings.around, rings.is_half);
+    for (const GaussRing& ring : gauss_rings(rings.rings, to)) {
       for (int k = 0; k < rings.around; ++k) {
-        GONIO_TRY(give({rounded(ring.theta), as_meant(rounded((k + 0.5) * step))}));
+        GONIO_TRY(give({rounded(ring.theta), as_meant(rounded((k + 0.5) * step))}, false, levels.level_of(k)));
       }
     }
     return {};

@@ -16,6 +16,9 @@ struct AskedDirection {
   std::optional<Wavelength> wavelength;  ///< none: each of the part's
   int line = 0;                          ///< of the list of points; 0: not from one
   bool may_be_out_of_reach = false;      ///< then it is left out; else the plan is refused
+  /// Of rings: directions of one level are kept or left out together, the lowest first, so that what is kept are even
+  /// azimuths on every ring. -1: a direction that stands for itself.
+  int level = -1;
 };
 
 using TakeDirection = std::function<Result<void>(const AskedDirection&)>;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/geometry.h"
 #include "base/units.h"
+#include "daemon/planner/time_experience.h"
 
 namespace gonio::daemon {
 
@@ -41,6 +43,26 @@ struct TimeParts {
   [[nodiscard]] Duration total() const { return move + settle + expose + read + idle.total(); }
 };
 
+/// What was said of a scan's time before it began.
+struct PredictedTime {
+  Duration total{};
+  double u_s = 0.0;        ///< standard uncertainty
+  Learned motion;          ///< that it was made with
+  std::int64_t scans = 0;  ///< finished ones that it rests on
+};
+
+/// What a plan's budget left of it. Counts are of points that are not blocked.
+struct BudgetChoice {
+  Duration allowed{};
+  Duration wished{};            ///< what the whole plan would take
+  std::int64_t directions = 0;  ///< of the plan
+  std::int64_t kept = 0;        ///< of them
+  std::int64_t repeats = 0;     ///< of the plan, beyond the first time of each direction
+  std::int64_t kept_repeats = 0;
+  double target_snr = 0.0;  ///< of a reading, chosen
+  Angle widest_gap;         ///< from a detector's direction that was left out to the nearest kept one
+};
+
 /// What a dry run says, and what the run then does.
 struct PlannedScan {
   int planner_version = 0;
@@ -51,8 +73,18 @@ struct PlannedScan {
   std::int64_t out_of_reach = 0;              ///< of cones, beyond the axes' limits: left out
   std::vector<std::int32_t> without_partner;  ///< of reciprocal pairs: points whose partner the arms do not reach
   std::int64_t blocked = 0;
-  std::int64_t items = 0;  ///< sample and reference, of the points that are not blocked
-  TimeParts estimate;      ///< visits included
+  std::int64_t items = 0;              ///< sample and reference, of the points that are not blocked
+  TimeParts estimate;                  ///< visits included
+  double u_estimate_s = 0.0;           ///< standard uncertainty of it
+  TimeExperience experience;           ///< what the estimate rests on
+  std::optional<BudgetChoice> budget;  ///< of a plan that has one
 };
+
+/// None of a scan whose time nobody estimated.
+[[nodiscard]] inline std::optional<PredictedTime> prediction_of(const PlannedScan& planned) {
+  const Duration total = planned.estimate.total();
+  if (total == Duration::zero()) return std::nullopt;
+  return PredictedTime{total, planned.u_estimate_s, planned.experience.motion, planned.experience.scans};
+}
 
 }  // namespace gonio::daemon

@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 
+#include "daemon/planner/budget_choice.h"
 #include "daemon/planner/direction_index.h"
+#include "daemon/planner/estimate.h"
 #include "daemon/planner/exposure_ladder.h"
 #include "daemon/planner/measuring_order.h"
 #include "daemon/planner/part_directions.h"
@@ -25,19 +29,24 @@ struct Origin {
 
 class Expansion {
  public:
-  Expansion(const api::Plan& plan, const Instrument& instrument)
+  Expansion(const api::Plan& plan, const Instrument& instrument, const TimeExperience& experience)
       : plan_(plan),
         instrument_(instrument),
+        experience_(experience),
         is_relative_(plan.relative_azimuth.value_or(plan.isotropic)),
         known_(plan.isotropic) {}
 
   Result<PlannedScan> run() {
     if (!plan_.theta_r.empty()) GONIO_TRY(take(product_of(plan_)));
-    for (const api::PlanPart& part : plan_.parts) GONIO_TRY(take(part));
+    for (const api::PlanPart& part : plan_.parts) {
+      ++part_;
+      GONIO_TRY(take(part));
+    }
     if (plan_.is_reciprocal) GONIO_TRY(add_partners());
     GONIO_TRY(check_count());
-    repeat();
-    return finish();
+    if (plan_.budget && !are_all_blocked()) return within_budget();
+    repeat(repeats_);
+    return finish(plan_);
   }
 
  private:
@@ -92,6 +101,7 @@ class Expansion {
     planned_.asked += repeats;
     if (planned_.asked > kMostPoints) return check_count();
     const auto point = reached(asked.geometry, wavelength, origin);
+    wanted_by_now_ = {part_, asked.level < 0 ? ++last_unit_ : unit_of_level(asked.level), asked.level};
     if (!point && asked.may_be_out_of_reach && point.error().code == ErrorCode::OutOfLimits) {
       planned_.out_of_reach += repeats;
       return {};
@@ -107,6 +117,7 @@ class Expansion {
     if (!twin) {
       planned_.points.push_back(point);
       repeats_.push_back(repeats);
+      wanted_by_.push_back(wanted_by_now_);
       return;
     }
     int& kept = repeats_[static_cast<std::size_t>(*twin)];
@@ -144,24 +155,50 @@ class Expansion {
         continue;
       }
       planned_.asked += repeats_[k];
+      wanted_by_now_ = wanted_by_[k];
       add(*partner, repeats_[k]);
     }
     return {};
   }
 
-  // Each point as often as it is asked for, under an index of its own.
-  void repeat() {
+  // Levels of one part are units of their own, whatever the light.
+  int unit_of_level(int level) {
+    const auto [unit, is_new] = level_units_.try_emplace({part_, level}, last_unit_ + 1);
+    if (is_new) ++last_unit_;
+    return unit->second;
+  }
+
+  [[nodiscard]] bool are_all_blocked() const { return std::ranges::all_of(planned_.points, &ScanPoint::blocked); }
+
+  // Each point as often as it is measured, under an index of its own.
+  void repeat(const std::vector<int>& repeats) {
     std::vector<ScanPoint> once = std::exchange(planned_.points, {});
-    std::vector<std::int32_t> first(once.size());
+    std::vector<std::int32_t> first(once.size(), -1);
     for (std::size_t k = 0; k < once.size(); ++k) {
-      first[k] = static_cast<std::int32_t>(planned_.points.size());
-      for (int n = 1; n <= repeats_[k]; ++n) {
+      if (repeats[k] > 0) first[k] = static_cast<std::int32_t>(planned_.points.size());
+      for (int n = 1; n <= repeats[k]; ++n) {
         once[k].index = static_cast<std::int32_t>(planned_.points.size());
         once[k].repeat = n;
         planned_.points.push_back(once[k]);
       }
     }
     for (std::int32_t& alone : planned_.without_partner) alone = first[static_cast<std::size_t>(alone)];
+    std::erase(planned_.without_partner, -1);
+  }
+
+  Result<PlannedScan> within_budget() {
+    std::vector<BudgetCandidate> candidates;
+    for (std::size_t k = 0; k < planned_.points.size(); ++k) {
+      const WantedBy& by = wanted_by_[k];
+      candidates.push_back({planned_.points[k], repeats_[k], by.part, by.unit, by.level});
+    }
+    auto share = share_out(plan_, instrument_, experience_, candidates);
+    if (!share) return failure(share.error());
+    planned_.budget = share->choice;
+    repeat(share->repeats);
+    api::Plan chosen = plan_;
+    chosen.target_snr = share->choice.target_snr;
+    return finish(chosen);
   }
 
   // The instrument's error, with what the plan calls it and where it asked; where no axis is one of the plan's angles,
@@ -190,7 +227,7 @@ class Expansion {
     return error;
   }
 
-  Result<PlannedScan> finish() {
+  Result<PlannedScan> finish(const api::Plan& plan) {
     for (const ScanPoint& point : planned_.points) planned_.blocked += point.blocked ? 1 : 0;
     const auto count = static_cast<std::int64_t>(planned_.points.size());
     if (planned_.blocked == count) {
@@ -204,10 +241,12 @@ class Expansion {
     }
     planned_.planner_version = kPlannerVersion;
     planned_.items = 2 * (count - planned_.blocked);
-    auto ordered = measuring_order(plan_, instrument_, planned_.points);
+    auto ordered = measuring_order(plan, instrument_, planned_.points, experience_);
     if (!ordered) return failure(ordered.error());
     planned_.order = std::move(ordered->order);
     planned_.estimate = ordered->time;
+    planned_.experience = experience_;
+    planned_.u_estimate_s = u_of_estimate_s(plan, instrument_, planned_);
     std::int32_t rank = 0;
     for (const std::int32_t index : planned_.order) planned_.points[static_cast<std::size_t>(index)].rank = rank++;
     for (ScanPoint& point : planned_.points) {
@@ -218,16 +257,27 @@ class Expansion {
 
   const api::Plan& plan_;
   const Instrument& instrument_;
+  const TimeExperience& experience_;
   const bool is_relative_;
   const stage::PerAxis<double> home_ = home_position(instrument_);
   DirectionIndex known_;
   std::vector<int> repeats_;  ///< of each point, while each stands once
+  struct WantedBy {
+    int part = 0;
+    int unit = 0;
+    int level = -1;
+  };
+  std::vector<WantedBy> wanted_by_;  ///< likewise
+  std::map<std::pair<int, int>, int> level_units_;
+  int part_ = 0;            ///< of what is being taken
+  WantedBy wanted_by_now_;  ///< likewise
+  int last_unit_ = 0;
   PlannedScan planned_;
 };
 
 }  // namespace
 
-Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument) {
+Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument, const TimeExperience& experience) {
   if (instrument.detector.power && !plan.exposures.empty()) {
     return failure(Error{.code = ErrorCode::InvalidInput,
                          .device = "plan",
@@ -237,7 +287,7 @@ Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument) 
                          .where = InputLocation{.field = "reading.exposure_s"}});
   }
   GONIO_TRY(rungs_of(plan.exposures, exposure_ladder(instrument.detector, plan.max_time)));
-  return Expansion(plan, instrument).run();
+  return Expansion(plan, instrument, experience).run();
 }
 
 }  // namespace gonio::daemon

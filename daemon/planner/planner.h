@@ -9,13 +9,15 @@
 namespace gonio::daemon {
 
 /// Grows whenever the same plan and instrument could give other points or another order.
-inline constexpr int kPlannerVersion = 2;
+inline constexpr int kPlannerVersion = 3;
 
 /// The points of a plan on an instrument, in the order of measurement: a pure function, for the dry run and for the
-/// run. Errors: OutOfLimits (axis, value, limit, the plan's field), AllPointsBlocked, Blocked (a point that
-/// the arms cannot come to from the one before, with the place on the path), InvalidInput (a wavelength
-/// without a filter, an exposure that is none of the detector's, no points or more than 10^7).
-[[nodiscard]] Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument);
+/// run. Of a plan with a budget only what fits into it by the estimate, chosen by `share_out`. Errors: OutOfLimits
+/// (axis, value, limit, the plan's field), AllPointsBlocked, Blocked (a point that the arms cannot come to from the one
+/// before, with the place on the path), InvalidInput (a wavelength without a filter, an exposure that is none of the
+/// detector's, no points or more than 10^7).
+[[nodiscard]] Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument,
+                                         const TimeExperience& experience = {});
 
 /// Whether the detector's head stands in the source's beam: xi < asin((r_d + r_s) / min(R_d, R_s)).
 [[nodiscard]] bool is_in_shadow(const Geometry& g, const Shadow& shadow);

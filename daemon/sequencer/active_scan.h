@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "daemon/planner/estimate.h"
-#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/planner/exposure_choice.h"
 #include "daemon/sequencer/measurement.h"
 #include "daemon/sequencer/messages.h"
 #include "daemon/sequencer/scan_items.h"
@@ -72,8 +72,9 @@ struct ActiveScan {
         holds(std::move(stored.holds)),
         spent(stored.spent),
         turn(stored.turn),
+        predicted(stored.predicted),
         items(points.size(), std::move(stored.order), policy.block, stored.accepted, stored.skipped),
-        chooser(instrument, policy),
+        chooser(instrument, {policy.target_snr, policy.max_time, policy.exposures}),
         dark_owed(stored.dark_owed),
         reference_visits{.level = stored.last_reference.level, .since = std::move(stored.last_reference.since)},
         check_visits{.level = stored.last_check.level, .since = std::move(stored.last_check.since)},
@@ -83,6 +84,7 @@ struct ActiveScan {
                 : check_visits.level   ? check_visits.level->point
                                        : visit_point(points);
     for (const auto& [item, count] : stored.attempts) failures[item] = count;
+    if (predicted && predicted->scans > 0) end_estimate.expect_motion(predicted->motion.value);
     for (const Duration exposure : stored.exposures_used) note_rung_of(exposure);
     if (!points.empty()) {
       const Filter* filter = filter_for(instrument, points.front().wavelength);
@@ -124,6 +126,7 @@ struct ActiveScan {
   std::vector<Hold> holds;
   TimeParts spent;
   ScanTurn turn;
+  std::optional<PredictedTime> predicted;
   ScanItems items;
   ExposureChooser chooser;
   Wavelength meter_wavelength;  ///< a radiometer's setting: of the first point's filter, for the whole scan

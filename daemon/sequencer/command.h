@@ -50,8 +50,8 @@ struct SkipItemInHand {
   ScanId scan = 0;
 };
 /// The order of the points that have neither sample nor reference yet.
-enum class RestOrder : std::uint8_t { AsWritten, Reversed, Random };
-/// "as-written", "reversed", "random".
+enum class RestOrder : std::uint8_t { AsWritten, Reversed, Random, Fastest };
+/// "as-written", "reversed", "random", "fastest".
 [[nodiscard]] std::string_view rest_order_name(RestOrder order);
 [[nodiscard]] std::optional<RestOrder> rest_order_from_name(std::string_view name);
 /// Changes what is not measured yet; an item in hand is ended as it was begun. What is absent stays.
@@ -61,6 +61,8 @@ struct ChangeScan {
   std::optional<Duration> max_time{};  ///< of one reading
   std::optional<RestOrder> order{};
   std::uint64_t seed = 1;  ///< of Random
+  /// Of Fastest: the points in the order that the sender has found; those that it does not name follow as they were.
+  std::vector<std::int32_t> fastest{};
   std::optional<int> priority{};
   std::optional<ScanTurn::Start> start{};  ///< only of a queued one
   std::string reason{};
@@ -134,8 +136,9 @@ struct Progress {
   std::int64_t failed_attempts = 0;  ///< since the daemon started
   std::optional<ItemKey> in_hand;
   TimeParts spent;                    ///< of attempts and visits
-  std::optional<Duration> remaining;  ///< from measured times; none before the first item of this run
+  std::optional<Duration> remaining;  ///< from measured times; before the first item of this run as predicted
   Duration u_remaining{};             ///< standard uncertainty of it
+  std::int64_t learned_from = 0;      ///< finished scans whose time the prediction rests on
 };
 
 /// What `GET status` shows of the sequencer: a value, copied out after each message.

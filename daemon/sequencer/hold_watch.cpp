@@ -19,6 +19,8 @@ void HoldWatch::note(HoldName hold, std::optional<std::string> why, Instant now)
 
 void HoldWatch::see_stage(const drivers::StageState& state, Instant now) {
   const auto when = [](bool stands, std::string why) { return stands ? std::optional(std::move(why)) : std::nullopt; };
+  if (boot_counter_ && *boot_counter_ != state.boot_counter) booted_ = now;
+  boot_counter_ = state.boot_counter;
   note(HoldName::Door, when(state.interlock_open, "the interlock is open"), now);
   note(HoldName::Device, when(state.fault != 0, fmt::format("the stage's fault word is {}", state.fault)), now);
   const bool is_in_light = lamp_.before_shutter || state.source_shutter == stage::ShutterState::Open;
@@ -84,6 +86,14 @@ std::optional<Instant> HoldWatch::ends_at(const Hold& hold) const {
 bool HoldWatch::ends_by_itself(const Hold& hold, Instant now) const {
   const auto at = ends_at(hold);
   return at && now >= *at;
+}
+
+bool HoldWatch::ends_after_boot(const Hold& hold, Instant now) const {
+  constexpr Duration kQuiet = std::chrono::seconds(1);
+  constexpr Duration kBefore = std::chrono::seconds(30);  // what fails so soon after a boot fails because of it
+  const Cause& device = of(HoldName::Device);
+  if (hold.name != HoldName::Device || !booted_ || !device.gone_since) return false;
+  return *booted_ >= hold.since - kBefore && now >= std::max({*device.gone_since, hold.since, *booted_}) + kQuiet;
 }
 
 }  // namespace gonio::daemon

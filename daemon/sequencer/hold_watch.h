@@ -30,6 +30,9 @@ class HoldWatch {
   /// Whether the instrument's file lets a hold of `owner` end by itself now: its cause has not been seen for as long as
   /// the file asks.
   [[nodiscard]] bool ends_by_itself(const Hold& hold, Instant now) const;
+  /// Whether a device's hold may end because the stage lost power, has come back since and answers without a fault: for
+  /// plans that ask to resume after a restart. What came of its place is verified by preparing.
+  [[nodiscard]] bool ends_after_boot(const Hold& hold, Instant now) const;
   /// When a hold that nothing more is seen of may end; nothing: not by itself, or its cause stands.
   [[nodiscard]] std::optional<Instant> ends_at(const Hold& hold) const;
   [[nodiscard]] std::optional<std::string> lamp_is_out() const { return standing(HoldName::Lamp); }
@@ -48,6 +51,8 @@ class HoldWatch {
   LampBand lamp_;
   bool has_own_monitor_;  ///< a radiometer: the stage's monitor says nothing
   std::array<Cause, 7> causes_;
+  std::optional<std::uint32_t> boot_counter_;  ///< as last seen
+  std::optional<Instant> booted_;              ///< seen to have booted, last
 };
 
 }  // namespace gonio::daemon

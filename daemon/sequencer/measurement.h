@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/planner/exposure_choice.h"
 #include "daemon/store/records.h"
 
 namespace gonio::daemon {

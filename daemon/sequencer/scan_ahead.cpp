@@ -11,7 +11,7 @@ namespace gonio::daemon {
 bool Sequencer::Impl::may_leave(const Job& job, Instant now) const {
   const bool goes_on = scan->state == ScanState::Running && scan->holds.empty() && !scan->finish_command &&
                        !scan->finish_asked && !is_in_transition && waiting.empty();
-  if (!goes_on || job.kind != Job::Kind::Item || job.frame || visit_may_be_next(now)) return false;
+  if (!goes_on || job.kind != Job::Kind::Item || job.frame || visit_is_next_after(job.item, now)) return false;
   if (config.instrument.monitor && !job.monitor) return false;
   return job.measurement->expects_no_more(scan->chooser);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <random>
+#include <unordered_map>
 #include <utility>
 
 #include "daemon/sequencer/scan_events.h"
@@ -61,13 +62,26 @@ std::optional<Error> refusal(const ActiveScan& changed, const ChangeScan& change
                .limit = "target_snr, max_time_s, order, priority, start"};
 }
 
+// The sender's search takes seconds, in which points are measured: what is left keeps its order.
+std::vector<std::int32_t> by_rank_in(const std::vector<std::int32_t>& found, std::vector<std::int32_t> rest) {
+  std::unordered_map<std::int32_t, std::size_t> rank;
+  for (std::size_t k = 0; k < found.size(); ++k) rank.try_emplace(found[k], k);
+  const auto rank_of = [&rank, &found](std::int32_t point) {
+    const auto known = rank.find(point);
+    return known == rank.end() ? found.size() : known->second;
+  };
+  std::ranges::stable_sort(rest, {}, rank_of);
+  return rest;
+}
+
 // Of the points that nothing was measured of. Fisher and Yates (1938), by a generator that is the same everywhere.
-std::vector<std::int32_t> in_new_order(std::vector<std::int32_t> rest, RestOrder order, std::uint64_t seed) {
+std::vector<std::int32_t> in_new_order(std::vector<std::int32_t> rest, RestOrder order, const ChangeScan& change) {
   if (order == RestOrder::AsWritten) std::sort(rest.begin(), rest.end());
   if (order == RestOrder::Reversed) std::reverse(rest.begin(), rest.end());
+  if (order == RestOrder::Fastest) return by_rank_in(change.fastest, std::move(rest));
   if (order != RestOrder::Random) return rest;
   std::sort(rest.begin(), rest.end());
-  std::mt19937_64 chance(seed);
+  std::mt19937_64 chance(change.seed);
   for (std::size_t left = rest.size(); left > 1; --left) std::swap(rest[left - 1], rest[chance() % left]);
   return rest;
 }
@@ -85,7 +99,7 @@ void Sequencer::Impl::run_verb(const Command& c, const ChangeScan& change, Insta
                     .max_time = change.max_time,
                     .priority = change.priority,
                     .start = change.start};
-  if (change.order) record.order = in_new_order(changed->items.untouched(), *change.order, change.seed);
+  if (change.order) record.order = in_new_order(changed->items.untouched(), *change.order, change);
   const NewEvent event = event_changed(change, changed->policy, changed->turn, c.who);
   apply(record, *changed, now);
   const AuditEntry entry = audit(c, ScanAsk::Change, changed->id, event.json);

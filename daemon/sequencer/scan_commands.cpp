@@ -67,7 +67,8 @@ void Sequencer::Impl::run_verb(const Command& c, const SubmitScan& submit, Insta
                         .points = submit.scan.planned.points,
                         .order = submit.scan.planned.order,
                         .merged = submit.scan.planned.merged,
-                        .turn = submit.scan.turn};
+                        .turn = submit.scan.turn,
+                        .predicted = prediction_of(submit.scan.planned)};
   const AuditEntry entry{.who = c.who, .action = "submit", .detail = submit.scan.name};
   commit({.at = now, .writes = {submit.scan, entry}, .events = {event_submitted(submit.scan)}},
          {.done =

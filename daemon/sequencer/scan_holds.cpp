@@ -153,13 +153,14 @@ void Sequencer::Impl::end_holds(ActiveScan& held, const std::vector<HoldName>& n
                                   .reply_failure_to = id});
 }
 
-// Where the instrument's file says so, a hold whose cause has been gone for long enough ends; a bounded number of
-// times.
+// Where the instrument's file says so, a hold whose cause has been gone for long enough ends; where the plan says so,
+// one of a stage that had lost power and is back. A bounded number of times.
 void Sequencer::Impl::end_gone_holds(Instant now) {
   if (stage_stopped || scan->holds.empty()) return;
   std::vector<HoldName> gone;
   for (const Hold& hold : scan->holds) {
-    if (watch.ends_by_itself(hold, now)) gone.push_back(hold.name);
+    const bool lost_power = scan->policy.on_restart == api::OnRestart::Resume && watch.ends_after_boot(hold, now);
+    if (lost_power || watch.ends_by_itself(hold, now)) gone.push_back(hold.name);
   }
   if (gone.empty()) return;
   if (scan->items.accepted() > scan->accepted_at_end) scan->ends_by_themselves = 0;

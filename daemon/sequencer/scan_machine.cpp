@@ -37,7 +37,7 @@ Error not_now(ScanId scan, ScanState state, bool is_aside, ScanAsk ask, const st
 }
 
 namespace {
-constexpr std::array<std::string_view, 3> kRestOrderNames{"as-written", "reversed", "random"};
+constexpr std::array<std::string_view, 4> kRestOrderNames{"as-written", "reversed", "random", "fastest"};
 }  // namespace
 
 std::string_view rest_order_name(RestOrder order) {

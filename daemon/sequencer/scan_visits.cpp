@@ -69,8 +69,9 @@ VisitClocks Sequencer::Impl::visit_clocks() const {
           .check = clock(scan->policy.check_every, scan->check_visits)};
 }
 
-bool Sequencer::Impl::visit_may_be_next(Instant now) const {
-  return next_job(visit_clocks(), now, true, [](NextJob) { return Detour{}; }) != NextJob::Item;
+bool Sequencer::Impl::visit_is_next_after(const ItemKey& in_hand, Instant now) const {
+  const auto detour = [&](NextJob visit) { return detour_of(visit, in_hand, now); };
+  return next_job(visit_clocks(), now, true, detour) != NextJob::Item;
 }
 
 void Sequencer::Impl::choose_job(Instant now) {
@@ -80,8 +81,9 @@ void Sequencer::Impl::choose_job(Instant now) {
   }
   const auto item = is_finishing ? std::nullopt : scan->items.next(now);
   const NextJob next = is_finishing ? next_closing_job(visit_clocks())
-                                    : next_job(visit_clocks(), now, item.has_value(),
-                                               [this, now](NextJob visit) { return detour_of(visit, now); });
+                                    : next_job(visit_clocks(), now, item.has_value(), [this, now](NextJob visit) {
+                                        return detour_of(visit, std::nullopt, now);
+                                      });
   switch (next) {
     case NextJob::Item:
       return start_item(*item, now);
@@ -97,12 +99,13 @@ void Sequencer::Impl::choose_job(Instant now) {
 
 // The boundaries before the latest time of the visit: the next few of this pass, and the turn of the carriage, where a
 // visit on the other side costs only what the arms go for it.
-Detour Sequencer::Impl::detour_of(NextJob visit, Instant now) const {
+Detour Sequencer::Impl::detour_of(NextJob visit, const std::optional<ItemKey>& in_hand, Instant now) const {
   constexpr Duration kNone = Duration::max();
   const Target target = visit == NextJob::Reference ? Target::Reference : Target::Sample;
   const VisitTrack& track = visit == NextJob::Reference ? scan->reference_visits : scan->check_visits;
   const Duration every = visit == NextJob::Reference ? scan->policy.reference_every : scan->policy.check_every;
-  const std::vector<ItemKey> ahead = scan->items.ahead(kBoundariesAhead + 1);
+  std::vector<ItemKey> ahead = scan->items.ahead(kBoundariesAhead + 2);
+  if (in_hand && !ahead.empty() && ahead.front() == *in_hand) ahead.erase(ahead.begin());
   const DurationStatistics& time = scan->item_time;
   if (!stage || ahead.empty() || time.count() == 0) return {.here = {}, .least_ahead = kNone};
   const Duration each = seconds(time.mean_s());

@@ -292,7 +292,13 @@ Progress Sequencer::Impl::progress() const {
              .spent = scan->spent};
   p.blocked = p.points - p.items / 2;
   if (scan->job && scan->job->kind == Job::Kind::Item) p.in_hand = scan->job->item;
-  if (!scan->end_estimate.is_ready()) return p;
+  if (scan->predicted) p.learned_from = scan->predicted->scans;
+  if (!scan->end_estimate.is_ready()) {
+    const double open = static_cast<double>(p.items - p.accepted - p.skipped) / static_cast<double>(p.items);
+    if (scan->predicted) p.remaining = seconds(open * in_seconds(scan->predicted->total));
+    if (scan->predicted) p.u_remaining = seconds(open * scan->predicted->u_s);
+    return p;
+  }
   const Remaining left = scan->end_estimate.of(work_left());
   p.remaining = seconds(left.time_s);
   p.u_remaining = seconds(std::sqrt(left.variance_s2));

@@ -199,9 +199,10 @@ struct Sequencer::Impl {
   [[nodiscard]] VisitClocks visit_clocks() const;
   /// Of each rung of the next dark.
   [[nodiscard]] int dark_frames() const;
-  /// Whether a visit is due, or might be once its detour is looked at.
-  [[nodiscard]] bool visit_may_be_next(Instant now) const;
-  [[nodiscard]] Detour detour_of(NextJob visit, Instant now) const;
+  /// Whether the boundary after the item in hand is a visit's.
+  [[nodiscard]] bool visit_is_next_after(const ItemKey& in_hand, Instant now) const;
+  /// From where the arms stand, before what is open; `in_hand` does not count as open any more.
+  [[nodiscard]] Detour detour_of(NextJob visit, const std::optional<ItemKey>& in_hand, Instant now) const;
   void start_dark(Instant now);
   void accept_dark(Job& job, Instant now);
   void start_visit(NextJob visit, Instant now);

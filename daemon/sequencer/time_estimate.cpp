@@ -73,6 +73,12 @@ void EndEstimate::add_item(calibration::Target target, const TimeParts& took, co
   by_model_s_ += in_seconds(model.move + model.settle);
 }
 
+void EndEstimate::expect_motion(double ratio) {
+  constexpr double kWorth_s = 60.0;
+  took_s_ += kWorth_s * ratio;
+  by_model_s_ += kWorth_s;
+}
+
 void EndEstimate::add_dark(const TimeParts& took) {
   dark_beyond_light_.add(took.move + took.settle + took.read + took.idle.wire + took.idle.commit);
 }

@@ -58,6 +58,9 @@ class EndEstimate {
   /// `is_turn`: the item before was of the other target.
   void add_item(calibration::Target target, const TimeParts& took, const StepTime& model, bool is_turn);
   void add_dark(const TimeParts& took);
+  /// What past scans took for moves and settling, beside the axes' numbers: counts as much as the first minute of its
+  /// own.
+  void expect_motion(double ratio);
   /// Whether there is anything to judge by.
   [[nodiscard]] bool is_ready() const { return sample_.count() + reference_.count() > 0; }
   [[nodiscard]] Remaining of(const WorkLeft& left) const;

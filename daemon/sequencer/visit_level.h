@@ -4,19 +4,12 @@
 #include <vector>
 
 #include "daemon/config/instrument.h"
-#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/planner/exposure_choice.h"
+#include "daemon/planner/visit_place.h"
 #include "daemon/sequencer/measurement.h"
 #include "daemon/store/records.h"
 
 namespace gonio::daemon {
-
-/// Where a scan's lit visits are made: the point nearest to 0/45 (theta_i/theta_r) of those not blocked, where the
-/// standard's shape is known best and no angle's error weighs much; of several the first that is measured.
-[[nodiscard]] std::int32_t visit_point(const std::vector<ScanPoint>& points);
-
-/// What a visit must reach, so that its noise does not pass for a drift: four standard deviations of a difference of
-/// two visits are one limit.
-[[nodiscard]] double visit_snr(double drift_limit);
 
 /// The level of the used frames of a visit at `point`:
 ///   sum_j (S_j - D_j) / sum_j (t_j + t0) m_j, of a radiometer sum_j (P_j - D_j) / sum_j m_j,

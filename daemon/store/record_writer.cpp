@@ -89,12 +89,32 @@ void RecordWriter::operator()(const NewScan& scan) {
   new_scan_ = database_.last_id();
   write_plan_parts(scan.plan_parts);
   write_points(scan.planned.points);
+  write_prediction(scan.planned);
   write_turn(new_scan_, scan.turn);
 }
 
 void RecordWriter::write_plan_parts(const std::map<std::string, std::string>& parts) {
   Statement& insert = database_.statement("INSERT INTO plan_part(scan_id, name, text) VALUES (?,?,?)");
   for (const auto& [name, text] : parts) insert.bind(new_scan_).bind(name).bind(text).run();
+}
+
+// Of a scan that completes another nothing was predicted.
+void RecordWriter::write_prediction(const PlannedScan& planned) {
+  const TimeParts& time = planned.estimate;
+  if (time.total() == Duration::zero()) return;
+  const TimeExperience& experience = planned.experience;
+  database_.statement("INSERT INTO prediction VALUES (?,?,?,?,?,?,?,?,?,?)")
+      .bind(new_scan_)
+      .bind((time.move + time.settle).count())
+      .bind(time.expose.count())
+      .bind(time.read.count())
+      .bind(planned.u_estimate_s)
+      .bind(experience.scans)
+      .bind(experience.motion.value)
+      .bind(experience.motion.u)
+      .bind(experience.beyond_s.value)
+      .bind(experience.beyond_s.u)
+      .run();
 }
 
 void RecordWriter::write_points(const std::vector<ScanPoint>& points) {

@@ -47,6 +47,7 @@ class RecordWriter {
   std::int64_t id_of_reference(const NewScan& scan);
   std::int64_t id_of_instrument(const NewScan& scan);
   void write_plan_parts(const std::map<std::string, std::string>& parts);
+  void write_prediction(const PlannedScan& planned);
   void write_points(const std::vector<ScanPoint>& points);
   void write_turn(ScanId scan, const ScanTurn& turn);
   void write_order(ScanId scan, const std::vector<std::int32_t>& order);

@@ -65,4 +65,10 @@ ScanPolicy policy_of(const api::Plan& plan) {
                     .drift_rounds = plan.drift_rounds};
 }
 
+ScanPolicy policy_of(const api::Plan& plan, const PlannedScan& planned) {
+  ScanPolicy policy = policy_of(plan);
+  if (planned.budget) policy.target_snr = planned.budget->target_snr;
+  return policy;
+}
+
 }  // namespace gonio::daemon

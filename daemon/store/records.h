@@ -119,6 +119,8 @@ struct ScanPolicy {
   friend bool operator==(const ScanPolicy&, const ScanPolicy&) = default;
 };
 [[nodiscard]] ScanPolicy policy_of(const api::Plan& plan);
+/// With what a budget chose.
+[[nodiscard]] ScanPolicy policy_of(const api::Plan& plan, const PlannedScan& planned);
 
 /// A scan's place in the queue.
 struct ScanTurn {
@@ -341,6 +343,7 @@ struct UnfinishedScan {
   double largest_drift = 0.0;                          ///< seen between two visits
   TimeParts spent;
   ScanTurn turn{};
+  std::optional<PredictedTime> predicted{};  ///< none: it completes another scan, or is older than predictions
 };
 
 }  // namespace gonio::daemon

@@ -397,8 +397,24 @@ CREATE INDEX calibration_use_by_version ON calibration_use(version);
 ALTER TABLE calibration ADD COLUMN versions TEXT NOT NULL DEFAULT '';
 )sql";
 
+// Version 10: what a scan was predicted to take, and what past scans had taught the prediction: they are compared.
+constexpr const char* kVersion10 = R"sql(
+CREATE TABLE prediction(
+  scan_id INTEGER PRIMARY KEY REFERENCES scan,
+  motion_ns INTEGER NOT NULL,
+  expose_ns INTEGER NOT NULL,
+  beyond_ns INTEGER NOT NULL,
+  u_s REAL NOT NULL,
+  scans INTEGER NOT NULL,
+  motion_ratio REAL NOT NULL,
+  u_motion_ratio REAL NOT NULL,
+  beyond_item_s REAL NOT NULL,
+  u_beyond_item_s REAL NOT NULL
+) STRICT;
+)sql";
+
 constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5,
-                                                              kVersion6, kVersion7, kVersion8, kVersion9};
+                                                              kVersion6, kVersion7, kVersion8, kVersion9, kVersion10};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

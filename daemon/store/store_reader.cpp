@@ -9,6 +9,7 @@
 
 #include "daemon/store/database.h"
 #include "daemon/store/found_calibrations.h"
+#include "daemon/store/past_scans.h"
 #include "daemon/store/schema.h"
 #include "daemon/store/unfinished_scans.h"
 #include "daemon/store/version_list.h"
@@ -238,6 +239,10 @@ class SqliteStoreReader final : public StoreReader {
     while (query.next()) number = query.integer(0);
     GONIO_TRY(database_->take_error());
     return number;
+  }
+
+  Result<TimeExperience> time_experience(const std::string& configuration_hash) override {
+    return look([&] { return read_experience(*database_, configuration_hash); });
   }
 
   Result<BrdfInfo> brdf(ScanId id) override {

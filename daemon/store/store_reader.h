@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "calibration/raw_reading.h"
+#include "daemon/planner/time_experience.h"
 #include "daemon/store/records.h"
 #include "drivers/stage_config.h"
 
@@ -126,6 +127,8 @@ class StoreReader {
   [[nodiscard]] virtual Result<BrdfInfo> brdf(ScanId id) = 0;
   /// All that calibration jobs have found, oldest first.
   [[nodiscard]] virtual Result<std::vector<FoundCalibration>> found_calibrations() = 0;
+  /// What the last finished scans of this configuration took beside what was predicted for them.
+  [[nodiscard]] virtual Result<TimeExperience> time_experience(const std::string& configuration_hash) = 0;
   /// All scans that are not over, oldest first. For the sequencer's start.
   [[nodiscard]] virtual Result<std::vector<UnfinishedScan>> unfinished(Instant now, UtcTime utc_now) = 0;
 };

@@ -97,7 +97,22 @@ void read_drift(Database& database, UnfinishedScan& scan) {
   scan.largest_drift = read_largest_drift(database, scan.id);
 }
 
+void read_prediction(Database& database, UnfinishedScan& scan) {
+  Statement& query = database
+                         .statement(
+                             "SELECT motion_ns + expose_ns + beyond_ns, u_s, motion_ratio, u_motion_ratio, scans FROM "
+                             "prediction WHERE scan_id = ?")
+                         .bind(scan.id);
+  while (query.next()) {
+    scan.predicted = PredictedTime{.total = Duration(query.integer(0)),
+                                   .u_s = query.real(1),
+                                   .motion = {query.real(2), query.real(3)},
+                                   .scans = query.integer(4)};
+  }
+}
+
 void complete(Database& database, UnfinishedScan& scan, Instant now, UtcTime utc_now) {
+  read_prediction(database, scan);
   scan.turn = read_turn(database, scan.id, now, utc_now);
   scan.points = read_points(database, scan.id, -1, std::numeric_limits<std::int64_t>::max());
   for (const ScanPoint& point : scan.points) {

@@ -49,6 +49,29 @@ json points_of(const PlannedScan& planned) {
   return points;
 }
 
+// What the store had taught the prediction: another store has other scans behind it.
+json json_of(const TimeExperience& experience) {
+  json white = json::array();
+  for (const WhiteSignal& one : experience.white) white.push_back({one.wavelength.si(), one.dn_per_s});
+  return {{"scans", experience.scans},
+          {"motion", {experience.motion.value, experience.motion.u}},
+          {"beyond_s", {experience.beyond_s.value, experience.beyond_s.u}},
+          {"white", white}};
+}
+
+// Earlier tapes name none.
+TimeExperience experience_from(const json& words) {
+  TimeExperience experience;
+  if (!words.is_object()) return experience;
+  experience.scans = words.at("scans");
+  experience.motion = {words.at("motion").at(0), words.at("motion").at(1)};
+  experience.beyond_s = {words.at("beyond_s").at(0), words.at("beyond_s").at(1)};
+  for (const json& one : words.at("white")) {
+    experience.white.push_back({Wavelength::from_si(one.at(0)), one.at(1)});
+  }
+  return experience;
+}
+
 json json_of(const SubmitScan& verb) {
   const NewScan& scan = verb.scan;
   json words{{"verb", "submit"},
@@ -60,6 +83,7 @@ json json_of(const SubmitScan& verb) {
              {"reference", scan.reference_text},
              {"reference_serial", scan.reference_serial},
              {"submitted_by", scan.who},
+             {"experience", json_of(scan.planned.experience)},
              {"turn",
               {{"priority", scan.turn.priority},
                {"preempts", scan.turn.preempts},
@@ -106,6 +130,7 @@ json json_of(const ChangeScan& verb) {
           {"max_time_ns", verb.max_time ? json(verb.max_time->count()) : json()},
           {"order", verb.order ? json(rest_order_name(*verb.order)) : json()},
           {"seed", verb.seed},
+          {"fastest", verb.fastest},
           {"priority", or_null(verb.priority)},
           {"start", json_of(verb.start)},
           {"reason", verb.reason}};
@@ -176,15 +201,15 @@ Result<Verb> submitted(const json& words, const Instrument& instrument) {
   scan.who = words.at("submitted_by");
   const Result<api::Plan> plan = api::parse_plan(scan.plan_text, scan.plan_file, scan.plan_parts);
   if (!plan) return failure(plan.error());
-  Result<PlannedScan> planned = expand(*plan, instrument);
+  Result<PlannedScan> planned = expand(*plan, instrument, experience_from(words.value("experience", json())));
   if (!planned) return failure(std::move(planned).error());
   scan.name = plan->name;
   scan.sample = plan->sample;
   scan.isotropic = plan->isotropic;
-  scan.policy = policy_of(*plan);
+  scan.planned = std::move(*planned);
+  scan.policy = policy_of(*plan, scan.planned);
   scan.instrument_text = instrument.text;
   scan.instrument_hash = instrument.sha256;
-  scan.planned = std::move(*planned);
   if (words.contains("turn")) read_turn(words.at("turn"), scan);
   if (words.contains("completion")) read_completion(words.at("completion"), scan);
   return submit;
@@ -195,6 +220,7 @@ ChangeScan change_of(const json& words) {
   change.target_snr = optional_of<double>(words.at("target_snr"));
   if (const auto ns = optional_of<std::int64_t>(words.at("max_time_ns"))) change.max_time = Duration(*ns);
   if (const auto order = optional_of<std::string>(words.at("order"))) change.order = rest_order_from_name(*order);
+  change.fastest = words.value("fastest", change.fastest);  // earlier tapes have none
   change.priority = optional_of<int>(words.at("priority"));
   change.start = start_from(words.at("start"));
   return change;

@@ -140,10 +140,7 @@ Result<MotionToken> ModbusStage::fresh_motion_token() {
   return motion_token_;
 }
 
-Result<MotionToken> ModbusStage::start_move(const MotionTarget& target, Epoch epoch) {
-  GONIO_TRY(check_limits(config_, target));
-  const Result<MotionToken> token = fresh_motion_token();
-  if (!token) return token;
+std::vector<std::uint16_t> ModbusStage::move_words(const MotionTarget& target, Epoch epoch, MotionToken token) const {
   CommandWords words(config_.registers, config_.registers.motion_block());
   std::int64_t mask = 0;
   for (const stage::Axis axis : stage::kAllAxes) {
@@ -153,10 +150,43 @@ Result<MotionToken> ModbusStage::start_move(const MotionTarget& target, Epoch ep
     words.set(axis, AxisField::Target, counts_of(config_, axis, *wanted));
   }
   words.set(Field::MotionEpoch, epoch);
-  words.set(Field::MotionToken, *token);
+  words.set(Field::MotionToken, token);
   words.set(Field::MotionMask, mask);
   words.set(Field::MotionCommand, config_.coordinated ? stage::kCommandMoveTogether : stage::kCommandMove);
-  return send_motion(words.take(), *token, motion_text(target));
+  return words.take();
+}
+
+Result<MotionToken> ModbusStage::start_move(const MotionTarget& target, Epoch epoch) {
+  GONIO_TRY(check_limits(config_, target));
+  const Result<MotionToken> token = fresh_motion_token();
+  if (!token) return token;
+  return send_motion(move_words(target, epoch, *token), *token, motion_text(target));
+}
+
+// One exchange writes the command, then reads. Without an answer it is the command alone that is seen to.
+Result<StartedMove> ModbusStage::start_move_and_look(const MotionTarget& target, Epoch epoch) {
+  GONIO_TRY(check_limits(config_, target));
+  const Result<MotionToken> token = fresh_motion_token();
+  if (!token) return failure(token.error());
+  const std::uint16_t first = config_.registers.motion_block().first;
+  const stage::Block block = config_.registers.status_block();
+  std::vector<std::uint16_t> command = move_words(target, epoch, *token);
+  std::vector<std::uint16_t> words(block.count);
+  auto sent = talk([&] { return link_.write_and_read(first, command, block.first, words); });
+  if (sent) return StartedMove{*token, shown_by(words, *token)};
+  if (!is_worth_another_try(sent.error())) return failure(in_words_of(std::move(sent).error(), motion_text(target)));
+  const Result<MotionToken> again = send_again(std::move(command), *token, motion_text(target));
+  if (!again) return failure(again.error());
+  return StartedMove{*again, std::nullopt};
+}
+
+// What was read beside a command counts when it shows the command's own token: no reply to anything before can.
+std::optional<StageState> ModbusStage::shown_by(std::span<const std::uint16_t> words, MotionToken token) {
+  auto state = stage_state_of(words, config_);
+  if (!state || (state->accepted_token != token && state->refused_token != token)) return std::nullopt;
+  state->at = clock_.now();
+  shown_ = ShownTokens{state->accepted_token, state->refused_token};
+  return std::optional(std::move(*state));
 }
 
 Result<MotionToken> ModbusStage::start_homing(Epoch epoch) {
@@ -176,11 +206,17 @@ Result<MotionToken> ModbusStage::send_motion(std::vector<std::uint16_t> words, M
   auto sent = talk([&] { return link_.write_registers(first, words); });
   if (sent) return token;
   if (!is_worth_another_try(sent.error())) return failure(in_words_of(std::move(sent).error(), tried));
+  return send_again(std::move(words), token, tried);
+}
+
+Result<MotionToken> ModbusStage::send_again(std::vector<std::uint16_t> words, MotionToken token,
+                                            const std::string& tried) {
+  const std::uint16_t first = config_.registers.motion_block().first;
   // The reply is missing, not necessarily the command: the stage knows.
   const Result<StageState> state = read_state();
   if (!state) return failure(in_words_of(state.error(), tried));
   if (state->accepted_token == token || state->refused_token == token) return token;
-  sent = talk([&] { return link_.write_registers(first, words); });
+  auto sent = talk([&] { return link_.write_registers(first, words); });
   if (!sent) return failure(in_words_of(std::move(sent).error(), tried));
   return token;
 }

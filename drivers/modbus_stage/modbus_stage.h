@@ -30,6 +30,7 @@ class ModbusStage final : public Stage {
 
   Result<StageState> read_state() override;
   Result<MotionToken> start_move(const MotionTarget& target, Epoch epoch) override;
+  Result<StartedMove> start_move_and_look(const MotionTarget& target, Epoch epoch) override;
   Result<MotionToken> start_homing(Epoch epoch) override;
   Result<void> set_shutters(bool source_open, bool detector_open) override;
   Result<void> reset(Epoch epoch) override;
@@ -42,8 +43,13 @@ class ModbusStage final : public Stage {
   [[nodiscard]] bool is_worth_another_try(const Error& error) const;
   [[nodiscard]] Result<StageState> look_once();
   [[nodiscard]] Result<MotionToken> fresh_motion_token();
+  [[nodiscard]] std::vector<std::uint16_t> move_words(const MotionTarget& target, Epoch epoch, MotionToken token) const;
+  [[nodiscard]] std::optional<StageState> shown_by(std::span<const std::uint16_t> words, MotionToken token);
   [[nodiscard]] Result<MotionToken> send_motion(std::vector<std::uint16_t> words, MotionToken token,
                                                 const std::string& tried);
+  /// After a command whose reply is missing.
+  [[nodiscard]] Result<MotionToken> send_again(std::vector<std::uint16_t> words, MotionToken token,
+                                               const std::string& tried);
   [[nodiscard]] Result<void> write_again(std::uint16_t first, const std::vector<std::uint16_t>& words,
                                          const std::string& tried);
 

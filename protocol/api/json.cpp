@@ -72,10 +72,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 reference, instrument_sha256, submitted_utc, changed_utc, points,
                                                 merged, blocked, items, accepted, skipped, attempts, visits,
                                                 reference_visits, check_visits, measured_again, largest_drift, spent,
-                                                seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
-                                                median_relative_u, worst_relative_u, priority, preempts, start_utc,
-                                                queue_place, completes, completed_by, calibrations, plan, plan_file,
-                                                plan_parts)
+                                                seconds_a_point, holds, doing, remaining_s, u_remaining_s,
+                                                learned_from_scans, brdf_values, median_relative_u, worst_relative_u,
+                                                priority, preempts, start_utc, queue_place, completes, completed_by,
+                                                calibrations, plan, plan_file, plan_parts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(WarmUpReport, slope_percent_per_min, limit_percent_per_min, waited_s,
                                                 at_least_s, at_most_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
@@ -83,10 +83,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrumen
                                                 detector_error, store_error, last_event)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HealthReport, ok, version)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanOrder, walk_s, bound_s, bound, as_written_s, snaked_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BudgetReport, allowed_s, wished_s, directions, kept, repeats,
+                                                kept_repeats, target_snr, widest_gap_deg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanReport, name, sample, reference, planner_version, asked, points,
                                                 merged, blocked, items, estimate, estimate_s, order, out_of_reach,
                                                 without_partner, walk, u_estimate_s, visits, disk_bytes,
-                                                median_relative_u, worst_relative_u)
+                                                median_relative_u, worst_relative_u, relative_u, learned_from_scans,
+                                                budget)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointReport, index, rank, theta_i_deg, phi_i_deg, theta_r_deg,
                                                 phi_r_deg, wavelength_nm, blocked, sample, reference, attempts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfReport, point, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,

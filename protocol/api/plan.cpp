@@ -133,6 +133,18 @@ void read_on_restart(TomlReader& root, Plan& plan) {
   if (table) plan.on_restart = static_cast<OnRestart>(table->choice_or("policy", 0, kPolicies));
 }
 
+void read_budget(TomlReader& root, Plan& plan) {
+  constexpr double kMinute = 60.0;
+  std::optional<TomlReader> table = root.optional_table("budget");
+  if (!table) return;
+  plan.budget =
+      PlanBudget{.time = seconds(kMinute * table->number("time_min", {.least = 0.1, .most = 1e5, .unit = "min"})),
+                 .least_snr = table->optional_number("least_snr", {.least = 1.0, .most = 1e6})};
+  if (!plan.budget->least_snr || *plan.budget->least_snr <= plan.target_snr) return;
+  table->fail("least_snr", ErrorCode::InvalidInput, fmt::format("{}", *plan.budget->least_snr),
+              fmt::format("at most target_snr = {}", plan.target_snr));
+}
+
 std::string needed_text(TomlReader& table, std::string_view key) {
   std::string text = table.text(key);
   if (text.empty()) table.fail(key, ErrorCode::InvalidInput, "the text is empty", "some text");
@@ -150,6 +162,7 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file,
   plan.name = needed_text(scan, "name");
   plan.sample = needed_text(scan, "sample");
   plan.isotropic = scan.flag_or("isotropic", true);
+  plan.expected_reflectance = scan.optional_number("expected_reflectance", {.least = 1e-4, .most = 1e3});
   Result<void> listed;
   if (!read_calibration(*root, plan)) read_geometry(root->table("geometry"), files, plan, listed);
   read_reading(*root, plan);
@@ -159,6 +172,7 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file,
   read_order(*root, plan);
   read_on_error(*root, plan);
   read_on_restart(*root, plan);
+  read_budget(*root, plan);
   GONIO_TRY(root->finish());
   GONIO_TRY(listed);
   return plan;

@@ -19,6 +19,13 @@ enum class OnItemError : std::uint8_t { Skip, Hold, Fail };
 enum class OnRestart : std::uint8_t { Resume, Hold };
 enum class ReferenceMode : std::uint8_t { SameGeometry };
 
+/// [budget]: what a scan may take at most. The planner chooses how to use it best.
+struct PlanBudget {
+  Duration time{};
+  /// A reading's signal-to-noise may come down to this before anything is left out; none: it stays at target_snr.
+  std::optional<double> least_snr;
+};
+
 /// A plan as its author wrote it, checked for form (names, units, ranges of single values) but not yet for the
 /// instrument: limits, blocked geometries and the reference's reach are the planner's. The points are those of the
 /// product of the lists, theta_i slowest (none when theta_r is empty), then those of the parts.
@@ -26,6 +33,9 @@ struct Plan {
   std::string name;
   std::string sample;
   bool isotropic = true;  ///< [scan] isotropic, default true: phi_r counts from phi_i, theta = 0 merges all phi
+  /// [scan] expected_reflectance: about how large the sample's reflectance factor is; none: not known. What a dry run
+  /// says rests on it, never a result.
+  std::optional<double> expected_reflectance;
   std::vector<Angle> theta_i;
   std::vector<Angle> phi_i;  ///< default {0}
   std::vector<Angle> theta_r;
@@ -55,6 +65,7 @@ struct Plan {
   OnItemError on_item_error = OnItemError::Skip;
   OnRestart on_restart = OnRestart::Resume;
   std::optional<PlanCalibration> calibration;  ///< the job that this scan is measured for
+  std::optional<PlanBudget> budget;  ///< none: everything is measured
 };
 
 /// Errors: InvalidInput, UnknownKey, MissingKey, with file, line, field and nearest name. `file` is the user's name for

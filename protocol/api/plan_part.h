@@ -32,7 +32,7 @@ struct ListShape {
 };
 
 /// rings = {gauss = N, around = M}: N rings at the nodes of Gauss and Legendre in cos^2(theta_r), each with M azimuths
-/// half a step off the plane of incidence. `gauss_rings` gives nodes and weights.
+/// half a step off the plane of incidence. `gauss_rings` (daemon/planner) gives nodes and weights.
 struct RingsShape {
   int rings = 0;
   int around = 0;

@@ -102,6 +102,7 @@ struct ScanReport {
   std::string doing;                        ///< while active: "exposing"
   std::optional<double> remaining_s;        ///< while active, from measured times
   std::optional<double> u_remaining_s;      ///< its standard uncertainty
+  std::int64_t learned_from_scans = 0;      ///< while active: finished scans that the prediction rests on
   std::optional<std::int64_t> brdf_values;  ///< once computed
   std::optional<double> median_relative_u;  ///< of the expanded uncertainties U (k = 2 or by dof) over the value
   std::optional<double> worst_relative_u;
@@ -158,6 +159,18 @@ struct PlanOrder {
   double snaked_s = 0.0;      ///< the whole scan to and fro along the axes
 };
 
+/// What a plan's budget left of it. Points that are blocked do not count.
+struct BudgetReport {
+  double allowed_s = 0.0;
+  double wished_s = 0.0;        ///< what the whole plan would take
+  std::int64_t directions = 0;  ///< of the plan
+  std::int64_t kept = 0;        ///< of them
+  std::int64_t repeats = 0;     ///< of the plan, beyond the first time of each direction
+  std::int64_t kept_repeats = 0;
+  double target_snr = 0.0;      ///< of a reading, chosen
+  double widest_gap_deg = 0.0;  ///< from a direction that was left out to the nearest kept one
+};
+
 /// A dry run: what a plan would do on this instrument.
 struct PlanReport {
   std::string name;
@@ -180,6 +193,9 @@ struct PlanReport {
   std::int64_t disk_bytes = 0;
   double median_relative_u = 0.0;  ///< expected U / f (k = 2), of what is known before the sample is
   double worst_relative_u = 0.0;
+  std::vector<double> relative_u;       ///< of the points in `order`
+  std::int64_t learned_from_scans = 0;  ///< finished scans of this configuration that the time rests on
+  std::optional<BudgetReport> budget;   ///< of a plan that has one
 };
 
 struct PointReport {

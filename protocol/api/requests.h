@@ -50,7 +50,7 @@ struct ResumeRequest {
 struct ChangeRequest {
   std::optional<double> target_snr;
   std::optional<double> max_time_s;  ///< of one reading
-  std::optional<std::string> order;  ///< of the points not begun: "as-written", "reversed", "random"
+  std::optional<std::string> order;  ///< of the points not begun: "as-written", "reversed", "random", "fastest"
   std::int64_t seed = 1;             ///< of "random"
   std::optional<int> priority;
   std::optional<std::string> start_utc;  ///< of a queued scan

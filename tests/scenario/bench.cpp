@@ -30,7 +30,8 @@ std::string plan_text(const PlanOptions& options) {
        << "[reading]\ntarget_snr = " << options.target_snr << "\nmax_time_s = 0.5\n"
        << (options.exposure_s.empty() ? "" : "exposure_s = " + options.exposure_s + "\n")
        << "[reference]\nstandard = \"SRT-99-020\"\nmode = \"same-geometry\"\nblock_s = " << options.block_s << "\n"
-       << "[visits]\ndark_s = " << options.dark_s << "\n[order]\nstrategy = \"" << options.strategy << "\"\n"
+       << "[visits]\ndark_s = " << options.dark_s << "\n"
+       << options.visits << "[order]\nstrategy = \"" << options.strategy << "\"\n"
        << "[on_error]\nitem = \"" << options.on_item_error << "\"\n[on_restart]\npolicy = \"resume\"\n";
   return text.str();
 }
@@ -114,7 +115,7 @@ void Bench::reset_and_resume(long id) const {
   const auto is_resumed = [&] {
     (void)daemon_->post("stage/reset");
     answer = daemon_->post(resume);
-    return answer.status / 100 == 2;
+    return answer.status / 100 == 2 || state_of(id) != "holding";  // its hold may have ended by itself
   };
   if (eventually(is_resumed, kStepDeadline)) return;
   throw std::runtime_error("the scan did not resume: " + answer.body + "\n" + log());

@@ -41,6 +41,7 @@ struct PlanOptions {
   int dark_s = 10;
   std::string exposure_s{};  ///< stated: "[0.001, 0.016]"; empty: chosen
   std::string on_item_error = "retry 2, then skip";
+  std::string visits{};  ///< more lines of [visits]
 };
 [[nodiscard]] std::string plan_text(const PlanOptions& options);
 

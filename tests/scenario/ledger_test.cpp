@@ -25,6 +25,7 @@ class LedgerOfASmallStore : public testing::Test {
         "CREATE TABLE point(scan_id INTEGER, point_index INTEGER, theta_i_deg REAL, theta_r_deg REAL, phi_r_deg REAL);"
         "CREATE TABLE attempt(attempt_id INTEGER PRIMARY KEY, point_index INTEGER, target TEXT, number INTEGER);"
         "CREATE TABLE item(point_index INTEGER, target TEXT, outcome TEXT, attempt_id INTEGER);"
+        "CREATE VIEW decided_item AS SELECT * FROM item;"
         "CREATE TABLE reading(attempt_id INTEGER, sequence INTEGER, mean_dn REAL);"
         "INSERT INTO event VALUES (1), (2), (3);"
         "INSERT INTO point VALUES (1, 0, 10, 0, 60), (1, 1, 10, 20, 60);"

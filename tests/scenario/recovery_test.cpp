@@ -81,8 +81,20 @@ TEST_F(Recovery, OfAllWaitsForTheOperatorWhenThePlanSaysHold) {
   expect_completion();
 }
 
-TEST_F(Recovery, OfTheInstrumentAloneHoldsAndTheResumeHomesIt) {
+TEST_F(Recovery, OfTheInstrumentAloneHomesItAndGoesOnWhenThePlanSaysResume) {
   begin("resume");
+  bench_.simulator().kill();
+  bench_.simulator().restart();
+
+  ASSERT_EQ(bench_.wait_for_state(scan_, {"done", "failed", "aborted"}), "done") << bench_.log();
+
+  expect_completion();
+  const std::vector<ServerEvent> events = all_events(bench_, bench_.daemon().port());
+  EXPECT_GE(count_of(events, "hold-added"), 1) << "somebody may want to know why";
+}
+
+TEST_F(Recovery, OfTheInstrumentAloneHoldsWhenThePlanSaysSoAndTheResumeHomesIt) {
+  begin("hold");
   bench_.simulator().kill();
   bench_.simulator().restart();
 

@@ -68,13 +68,13 @@ long StoreCopy::count(const std::string& from) const {
 std::map<std::string, std::string> StoreCopy::accepted_items() const {
   std::map<std::string, std::string> items;
   SQLite::Statement attempts(database_->sqlite,
-                             "SELECT attempt.* FROM item JOIN attempt USING (attempt_id) "
-                             "WHERE item.outcome = 'accepted'");
+                             "SELECT attempt.* FROM decided_item i JOIN attempt USING (attempt_id) "
+                             "WHERE i.outcome = 'accepted'");
   while (attempts.executeStep()) items[item_name(attempts)] += exact_row(attempts);
   SQLite::Statement readings(database_->sqlite,
                              "SELECT attempt.point_index AS point_index, attempt.target AS target, reading.* "
-                             "FROM item JOIN attempt USING (attempt_id) JOIN reading USING (attempt_id) "
-                             "WHERE item.outcome = 'accepted' ORDER BY reading.attempt_id, reading.sequence");
+                             "FROM decided_item i JOIN attempt USING (attempt_id) JOIN reading USING (attempt_id) "
+                             "WHERE i.outcome = 'accepted' ORDER BY reading.attempt_id, reading.sequence");
   while (readings.executeStep()) items[item_name(readings)] += exact_row(readings);
   return items;
 }

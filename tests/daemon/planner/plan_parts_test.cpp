@@ -8,8 +8,8 @@
 #include <numbers>
 #include <set>
 
+#include "daemon/planner/gauss_rings.h"
 #include "daemon/planner/planner.h"
-#include "protocol/api/gauss_rings.h"
 #include "tests/daemon/support/bench_instrument.h"
 
 namespace gonio::daemon {
@@ -76,7 +76,7 @@ TEST(PlanParts, GaussRingsOfALambertianSurfaceSumToItsReflectance) {
   // rho over theta < to of f = 1 / pi is sin^2(to), whatever the number of rings.
   for (const int count : {1, 2, 7, 40}) {
     double sum = 0.0;
-    for (const auto& ring : api::gauss_rings(count, degrees(75))) sum += ring.weight / std::numbers::pi;
+    for (const auto& ring : gauss_rings(count, degrees(75))) sum += ring.weight / std::numbers::pi;
     EXPECT_NEAR(sum, std::pow(std::sin(75.0 * std::numbers::pi / 180.0), 2), 1e-14) << count;
   }
 }
@@ -89,7 +89,7 @@ TEST(PlanParts, GaussRingsStandAtThePrintedNodes) {
                                                      {-0.538469310105683, 0.478628670499366},
                                                      {-0.906179845938664, 0.236926885056189}};
 
-  const auto rings = api::gauss_rings(5, degrees(90));
+  const auto rings = gauss_rings(5, degrees(90));
 
   ASSERT_EQ(rings.size(), 5U);
   for (std::size_t k = 0; k < 5; ++k) {
@@ -104,7 +104,7 @@ TEST(PlanParts, RingsReachAsFarAsTheArmAndStayOffThePlaneOfIncidence) {
 
   ASSERT_TRUE(scan && half) << describe(scan.error());
   EXPECT_EQ(scan->points.size(), 24U);
-  const auto rings = api::gauss_rings(4, degrees(85));  // the axis' limit
+  const auto rings = gauss_rings(4, degrees(85));  // the axis' limit
   for (std::size_t k = 0; k < 24; ++k) {
     EXPECT_NEAR(in_degrees(scan->points[k].geometry.theta_r), in_degrees(rings[k / 6].theta), 1e-6);
     EXPECT_NEAR(in_degrees(scan->points[k].geometry.phi_r), 30.0 + 60.0 * static_cast<double>(k % 6), 1e-6);

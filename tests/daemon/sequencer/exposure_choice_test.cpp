@@ -1,4 +1,4 @@
-#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/planner/exposure_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace {
 using calibration::Target;
 using std::chrono::milliseconds;
 
-ScanPolicy policy(double snr, Duration max_time = std::chrono::seconds(1)) {
-  return ScanPolicy{.target_snr = snr, .max_time = max_time};
+ReadingLimits policy(double snr, Duration max_time = std::chrono::seconds(1)) {
+  return ReadingLimits{.target_snr = snr, .max_time = max_time};
 }
 
 TEST(ExposureChooser, TheLadderGoesByTwosUpToTheDetectorsAndThePlansLongest) {
@@ -146,11 +146,11 @@ TEST(Measurement, EveryLightEndsWithinABoundedNumberOfExposures) {
   }
 }
 
-ScanPolicy bracketed(std::vector<Duration> exposures, double snr, Duration max_time = std::chrono::seconds(1)) {
-  return ScanPolicy{.target_snr = snr, .max_time = max_time, .exposures = std::move(exposures)};
+ReadingLimits bracketed(std::vector<Duration> exposures, double snr, Duration max_time = std::chrono::seconds(1)) {
+  return ReadingLimits{.target_snr = snr, .max_time = max_time, .exposures = std::move(exposures)};
 }
 
-ExposureChooser stated_chooser(const ScanPolicy& policy) {
+ExposureChooser stated_chooser(const ReadingLimits& policy) {
   ExposureChooser chooser(test::bench_instrument(), policy);
   for (std::size_t rung = 0; rung < chooser.rungs().size(); ++rung) chooser.learn_dark(rung, 100.0);
   return chooser;

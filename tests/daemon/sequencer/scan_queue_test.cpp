@@ -225,6 +225,64 @@ TEST_F(ScanTurns, TheRestIsMeasuredInANewOrderToANewTarget) {
             1);
 }
 
+TEST_F(ScanTurns, TheRestGoesInTheOrderThatASearchHasFoundForIt) {
+  const ScanId id = submit({}, {10, 20, 40, 60});
+  until_item();
+
+  ASSERT_TRUE(answer(ChangeScan{.scan = id, .order = RestOrder::Fastest, .fastest = {2, 3, 1}}));
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Done);
+  const std::int64_t first = rig.count("SELECT point_index FROM point WHERE rank = 0");
+  std::vector<std::int64_t> found{2, 3, 1};
+  std::erase(found, first);
+  for (std::size_t k = 0; k + 1 < found.size(); ++k) {
+    EXPECT_LT(rig.count("SELECT rank FROM point WHERE point_index = " + std::to_string(found[k])),
+              rig.count("SELECT rank FROM point WHERE point_index = " + std::to_string(found[k + 1])));
+  }
+}
+
+TEST_F(ScanTurns, AStageThatLostPowerAndIsBackEndsItsHoldWhereThePlanResumes) {
+  const ScanId id = submit();
+  until_item();
+  rig.watch_for(std::chrono::seconds(1));  // its boot counter is known
+  ++rig.world.stage.boot_counter;
+  rig.world.stage.homed = false;
+  rig.world.move_error = [](const MoveTo&) { return Error{.code = ErrorCode::PositionLost, .device = "stage"}; };
+  rig.run_to_rest();
+  ASSERT_EQ(rig.state_of(id), ScanState::Holding);
+  ASSERT_EQ(holds(), std::vector<HoldName>{HoldName::Device});
+
+  rig.world.move_error = [](const MoveTo&) { return std::nullopt; };
+  rig.watch_for(std::chrono::seconds(5));
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Done);
+  EXPECT_TRUE(rig.world.stage.homed);
+  EXPECT_EQ(rig.count("SELECT count(*) FROM hold WHERE name = 'device' AND cleared_by = 'goniod'"), 1);
+}
+
+TEST_F(ScanTurns, AStageThatLostPowerWaitsForTheOperatorWhereThePlanHolds) {
+  NewScan scan = test::new_scan(test::bench_plan({30}, {10, 20, 60}, {90}));
+  scan.policy.on_restart = api::OnRestart::Hold;
+  const ScanId id = answer(SubmitScan{std::move(scan)})->scan;
+  until_item();
+  rig.watch_for(std::chrono::seconds(1));
+  ++rig.world.stage.boot_counter;
+  rig.world.stage.homed = false;
+  rig.world.move_error = [](const MoveTo&) { return Error{.code = ErrorCode::PositionLost, .device = "stage"}; };
+  rig.run_to_rest();
+
+  rig.world.move_error = [](const MoveTo&) { return std::nullopt; };
+  rig.watch_for(std::chrono::seconds(60));
+  EXPECT_EQ(rig.state_of(id), ScanState::Holding);
+  ASSERT_TRUE(answer(ResumeScan{.scan = id}));
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Done);
+  EXPECT_TRUE(rig.world.stage.homed);
+}
+
 TEST_F(ScanTurns, ALongerTimeBringsLongerExposuresWithADarkBeforeThem) {
   rig.world.rate_dn_per_s = [](double, bool) { return 2e3; };
   NewScan scan = test::new_scan(test::bench_plan({30}, {10, 20, 60}, {90}));

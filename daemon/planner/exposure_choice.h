@@ -9,7 +9,6 @@
 #include "base/clock.h"
 #include "calibration/raw_reading.h"
 #include "daemon/config/instrument.h"
-#include "daemon/store/records.h"
 
 namespace gonio::daemon {
 
@@ -20,6 +19,13 @@ struct ExposurePlan {
   friend bool operator==(const ExposurePlan&, const ExposurePlan&) = default;
 };
 
+/// What a plan asks of a reading.
+struct ReadingLimits {
+  double target_snr = 300.0;
+  Duration max_time{};
+  std::vector<Duration> exposures{};  ///< ascending; empty: chosen
+};
+
 /// Chooses exposures and frame counts from the photon-transfer model of the detector (EMVA 1288): the cheapest rung
 /// that reaches the plan's signal-to-noise within its time, well below full scale; if none does, the one that comes
 /// nearest. A radiometer's rungs are its ranges, the largest first, and its unit is the part of a range instead of the
@@ -27,7 +33,7 @@ struct ExposurePlan {
 /// from frames.
 class ExposureChooser {
  public:
-  ExposureChooser(const Instrument& instrument, const ScanPolicy& policy);
+  ExposureChooser(const Instrument& instrument, const ReadingLimits& limits);
 
   /// shortest * 2^n, up to the longest that the detector and the plan's max_time allow; never empty.
   [[nodiscard]] const std::vector<Duration>& rungs() const { return rungs_; }

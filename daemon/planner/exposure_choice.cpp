@@ -1,4 +1,4 @@
-#include "daemon/sequencer/exposure_choice.h"
+#include "daemon/planner/exposure_choice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,19 +22,19 @@ constexpr double kFrameTimeGain = 0.1;  // of an exponential mean: ten frames or
 
 }  // namespace
 
-ExposureChooser::ExposureChooser(const Instrument& instrument, const ScanPolicy& policy)
+ExposureChooser::ExposureChooser(const Instrument& instrument, const ReadingLimits& limits)
     : mean_change_(kChangeAtFirst),
-      target_snr_(policy.target_snr),
-      max_time_(policy.max_time),
+      target_snr_(limits.target_snr),
+      max_time_(limits.max_time),
       frames_at_most_(instrument.detector.frames_at_most),
       electrons_per_dn_(instrument.model.detector.electrons_per_dn /
                         std::pow(10.0, instrument.detector.gain_db / 20.0)),
       read_noise_dn_(instrument.model.detector.read_noise_dn),
       full_scale_dn_(instrument.model.detector.full_scale_dn),
       frame_time_(kFrameTimeAtFirst) {
-  rungs_ = exposure_ladder(instrument.detector, policy.max_time);
+  rungs_ = exposure_ladder(instrument.detector, limits.max_time);
   // The planner has checked them; a scan resumes under the same configuration only.
-  if (auto stated = rungs_of(policy.exposures, rungs_)) stated_ = std::move(*stated);
+  if (auto stated = rungs_of(limits.exposures, rungs_)) stated_ = std::move(*stated);
   dark_dn_.assign(rungs_.size(), 0.0);
   top_ = rungs_.size() - 1;
   if (instrument.detector.power) ranges_w_ = instrument.detector.power->ranges_w;
