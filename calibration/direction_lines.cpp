@@ -35,6 +35,10 @@ std::int64_t light_key(const SlopePoint& p) {
 /// Stops by line, in the order in which they were added.
 class Sorter {
  public:
+  explicit Sorter(std::size_t stops) {
+    added_.reserve(stops);
+    line_of_.reserve(stops);
+  }
   void add(const LineKey& key, const LineStop& stop) { add(number_of(key), stop); }
   void add(std::uint32_t line, const LineStop& stop) {
     added_.push_back(stop);
@@ -159,7 +163,8 @@ Angle azimuth_between(const Geometry& g, bool isotropic) {
 }
 
 DirectionLines::DirectionLines(std::span<const SlopePoint> points, bool isotropic, DirectionAxis axis) {
-  Sorter sorter;
+  constexpr std::size_t kImages = 2;  // of a point on a phi line
+  Sorter sorter(points.size() * (axis == DirectionAxis::PhiR ? 1 + kImages : 2));
   if (axis == DirectionAxis::PhiR) {
     sort_phi_lines(points, isotropic, sorter);
   } else {

@@ -1,0 +1,189 @@
+// Reducing a scan to BRDF with budgets, from memory: seconds a million points, and the share of each step. The scan is
+// a grid of directions at one wavelength, each with its own sample and reference reading, a dark visit each thousand
+// points and a visit of the standard each two thousand. Usage: bench_calibration [POINTS [ROUNDS]]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "calibration/calibrate.h"
+#include "calibration/direction_slopes.h"
+#include "calibration/reading_pairs.h"
+#include "calibration/scan_histories.h"
+
+namespace {
+
+using namespace gonio;
+using namespace gonio::calibration;
+
+constexpr int kDarkEvery = 1000;
+constexpr int kVisitEvery = 2000;
+constexpr double kDarkDn = 64.0;
+const UtcTime kMeasuredOn{std::chrono::sys_days{std::chrono::year{2026} / 3 / 1}};
+
+double seconds_of(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double brdf(const Geometry& g) {
+  return 0.2 + 0.05 * std::cos(g.theta_r.si()) * std::cos(g.phi_r.si());
+}
+
+/// A scan as the store would hand it over, without noise: what is timed does not depend on it.
+class Grid {
+ public:
+  explicit Grid(int points) {
+    scan_.readings.reserve(static_cast<std::size_t>(2 * points + 3 * points / kDarkEvery + 10));
+    scan_.points.reserve(static_cast<std::size_t>(points));
+    const int views = 90;
+    const int turns = 100;
+    for (int n = 0; n < points; ++n) {
+      const int i = n / (views * turns);
+      if (n % kDarkEvery == 0) add_dark();
+      const Geometry g{.theta_i = degrees(0.3 + 0.6 * i),
+                       .phi_i = {},
+                       .theta_r = degrees(0.5 + 0.85 * ((n / turns) % views)),
+                       .phi_r = degrees(1.8 * (n % turns))};
+      scan_.points.push_back({.index = n, .geometry = g, .wavelength = nanometres(568.0)});
+      if (n % kVisitEvery == 0) add(Target::Reference, scan_.points.front(), true);
+      add(Target::Sample, scan_.points.back(), false);
+      add(Target::Reference, scan_.points.back(), false);
+    }
+    add_dark();
+  }
+  [[nodiscard]] const ScanReadings& scan() const { return scan_; }
+
+ private:
+  RawReading& begin(Target target) {
+    const auto number = static_cast<std::int64_t>(scan_.readings.size()) + 1;
+    now_s_ += 1.0;
+    scan_.readings.push_back({.id = number,
+                              .target = target,
+                              .point_index = {},
+                              .visited_point = {},
+                              .visit_id = number,
+                              .wavelength = nanometres(568.0),
+                              .at = Instant(seconds(now_s_)),
+                              .frames = {}});
+    return scan_.readings.back();
+  }
+  static RawFrame frame(double mean_dn, const Geometry& g) {
+    RawFrame frame;
+    frame.region = {.n = 450, .mean = mean_dn, .m2 = 20.0};
+    frame.exposure_s = 0.016;
+    frame.monitor_mean = 1.0;
+    frame.monitor_se = 1e-4;
+    frame.at_open = frame.at_close = g;
+    return frame;
+  }
+  void add_dark() { begin(Target::Dark).frames.push_back(frame(kDarkDn, {})); }
+  void add(Target target, const PlannedPoint& point, bool is_visit) {
+    const double f = target == Target::Sample ? brdf(point.geometry) : 0.99 / std::numbers::pi;
+    RawReading& reading = begin(target);
+    (is_visit ? reading.visited_point : reading.point_index) = point.index;
+    reading.frames.push_back(frame(kDarkDn + 5000.0 * f * std::cos(point.geometry.theta_i.si()), point.geometry));
+  }
+
+  ScanReadings scan_;
+  double now_s_ = 0.0;
+};
+
+ReferenceStandard white() {
+  std::string values;
+  for (int n = 0; n < 12 * 12 * 13; ++n) values += n == 0 ? "1.0" : ", 1.0";
+  const std::string thetas = "[0, 8, 15, 22, 30, 38, 45, 52, 60, 68, 75, 85]";
+  auto standard = ReferenceStandard::parse(
+      "[standard]\nserial = \"SRT-99\"\n[certificate]\ndate = 2025-01-01\nexpires = 2030-01-01\ngeometry = \"8/h\"\n"
+      "specular = \"included\"\ncoverage_factor = 2.0\nuncertainty_kind = \"absolute\"\n"
+      "[[certificate.entries]]\nwavelength_nm = 568.0\nreflectance = 0.99\nuncertainty = 0.005\n[shape]\ntheta_i_deg "
+      "= " +
+          thetas + "\ntheta_r_deg = " + thetas +
+          "\nphi_deg = [0, 15, 30, 45, 60, 75, 90, 105, 120, 135, 150, 165, 180]\nvalues = [" + values +
+          "]\nu_integral = 0.001\n[[shape.modes]]\nname = \"limb\"\nkind = \"limb\"\nu = 0.01\n[[shape.modes]]\nname = "
+          "\"forward\"\nkind = \"forward\"\nu = 0.005\n",
+      "white.toml");
+  if (!standard) {
+    fmt::print("{}\n", describe(standard.error()));
+    std::exit(1);
+  }
+  return std::move(standard).value();
+}
+
+InstrumentModel instrument() {
+  InstrumentModel model;
+  model.detector = {.electrons_per_dn = 4.0,
+                    .read_noise_dn = 1.5,
+                    .exposure_offset_s = {.value = 0.0, .u = 1e-5},
+                    .u_linearity = 0.002};
+  model.angles = {.u_zero_theta_i = degrees(0.02),
+                  .u_zero_theta_r = degrees(0.02),
+                  .u_zero_phi_r = degrees(0.02),
+                  .u_repeat = degrees(0.01)};
+  model.lamp = {.u_after_monitor = 0.001, .u_reproducibility = 0.003};
+  return model;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int points = argc > 1 ? std::atoi(argv[1]) : 1'000'000;
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
+  const Grid grid(points);
+  const ReferenceStandard standard = white();
+  const InstrumentModel model = instrument();
+  std::vector<double> whole;
+  std::vector<double> single;
+  std::vector<double> pairs;
+  std::vector<double> histories;
+  std::vector<double> slopes;
+  std::size_t terms = 0;
+  for (int round = 0; round < rounds; ++round) {
+    pairs.push_back(seconds_of([&] { (void)pair_readings(grid.scan()); }));
+    histories.push_back(seconds_of([&] { const ScanHistories all(grid.scan(), model, {}); }));
+    CalibratedScan scan;
+    whole.push_back(seconds_of([&] {
+      auto result = calibrate(grid.scan(), model, standard, kMeasuredOn);
+      if (result) scan = std::move(result).value();
+    }));
+    if (scan.points.size() != static_cast<std::size_t>(points)) return 1;
+    terms = scan.points.front().budget.shared.size() + scan.points.front().budget.random.size();
+    std::vector<SlopePoint> places;
+    for (const CalibratedPoint& point : scan.points) {
+      const auto n = static_cast<std::size_t>(point.point_index);
+      places.push_back({.planned = grid.scan().points[n].geometry,
+                        .reported = point.geometry,
+                        .wavelength = point.wavelength,
+                        .value = point.value,
+                        .u_random = point.budget.u_random});
+    }
+    slopes.push_back(seconds_of([&] { (void)direction_slopes(places, true, 0); }));
+    scan = {};
+    if (round == 0) {
+      single.push_back(seconds_of([&] { (void)calibrate(grid.scan(), model, standard, kMeasuredOn, {.threads = 1}); }));
+    }
+  }
+  const double all = median(whole);
+  fmt::print("bench_calibration: {} points, {} terms each, {} rounds, medians\n", points, terms, rounds);
+  fmt::print("  whole, all threads   {:.3f} s  {:.2f} us a point\n", all, 1e6 * all / points);
+  fmt::print("  whole, one thread    {:.3f} s (one round)\n", median(single));
+  const auto share = [&](const char* name, double s) {
+    fmt::print("  {:<20} {:.3f} s  {:.0f} %\n", name, s, 100.0 * s / all);
+  };
+  share("pairs", median(pairs));
+  share("histories", median(histories));
+  share("slopes", median(slopes));
+  share("equation and budget", all - median(pairs) - median(histories) - median(slopes));
+  return 0;
+}
