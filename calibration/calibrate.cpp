@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -40,13 +41,28 @@ Error no_reference(const PlannedPoint& point) {
           .limit = "one at the same geometry and wavelength"};
 }
 
-/// The scan on its way: points that have a pair of readings, and what is made of them.
-struct Draft {
+/// Where a point comes from.
+struct Origin {
+  std::int32_t point_index = 0;
+  std::int64_t sample_reading = 0;
+  bool is_borrowed = false;
+};
+
+/// A block of the scan on its way: points that have a pair of readings.
+struct DraftBlock {
+  std::size_t first = 0;  ///< of its points, among all with a value
   std::vector<PairedPoint> pairs;
-  std::vector<CalibratedPoint> points;  ///< as many
-  std::vector<SlopePoint> places;       ///< as many
-  std::vector<bool> borrowed;           ///< as many
+  std::vector<Origin> origins;     ///< as many
+  std::vector<SlopePoint> places;  ///< as many, until they are joined
   std::vector<RefusedPoint> refused;
+  double frame_chi2 = 0.0;
+  double frame_dof = 0.0;
+};
+
+/// The scan on its way. Blocks are never joined: a pair of readings is some kilobyte.
+struct Draft {
+  std::vector<DraftBlock> blocks;
+  std::vector<SlopePoint> places;  ///< of all blocks
 };
 
 /// All that every point of a scan is made with.
@@ -72,29 +88,26 @@ struct Workshop {
   }
 };
 
-void keep_pair(const PlannedPoint& point, const ReadingPair& readings, PairedPoint pair, const Workshop& shop,
-               Draft& draft) {
-  draft.points.push_back({.point_index = point.index,
-                          .geometry = pair.sample.geometry,
-                          .wavelength = point.wavelength,
-                          .value = per_steradian(pair.value),
-                          .budget = {},
-                          .sample_reading = readings.sample->id,
-                          .reference_reading = pair.reference_id});
+void keep_pair(const PlannedPoint& point, const ReadingPair& readings, PairedPoint&& pair, const Workshop& shop,
+               DraftBlock& draft) {
+  draft.origins.push_back(
+      {.point_index = point.index, .sample_reading = readings.sample->id, .is_borrowed = readings.is_borrowed});
   draft.places.push_back({.planned = point.geometry,
                           .reported = pair.sample.geometry,
                           .wavelength = point.wavelength,
                           .value = per_steradian(pair.value),
                           .u_random = scatter(pair, shop.instrument),
                           .state = static_cast<std::int32_t>(point.polarisation)});
-  draft.borrowed.push_back(readings.is_borrowed);
+  draft.frame_chi2 += pair.sample.frame_chi2 + pair.reference.frame_chi2;
+  draft.frame_dof += pair.sample.frame_dof + pair.reference.frame_dof;
   draft.pairs.push_back(std::move(pair));
 }
 
-Draft draft_block(const std::vector<ReadingPair>& pairs, std::size_t first, std::size_t last, const Workshop& shop) {
-  Draft draft;
+DraftBlock draft_block(const std::vector<ReadingPair>& pairs, std::size_t first, std::size_t last,
+                       const Workshop& shop) {
+  DraftBlock draft;
   draft.pairs.reserve(last - first);
-  draft.points.reserve(last - first);
+  draft.origins.reserve(last - first);
   draft.places.reserve(last - first);
   const EquationContext context = shop.equation();
   for (std::size_t n = first; n < last; ++n) {
@@ -114,43 +127,34 @@ Draft draft_block(const std::vector<ReadingPair>& pairs, std::size_t first, std:
   return draft;
 }
 
-template <class T>
-void append(std::vector<T>& to, std::vector<T>& from) {
-  to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
-}
-
 Draft draft_scan(const Workshop& shop) {
   const std::vector<ReadingPair> pairs = pair_readings(shop.scan);
-  std::vector<Draft> blocks(blocks_of(pairs.size()));
-  for_blocks(blocks.size(), shop.options.threads, [&](std::size_t block) {
+  Draft draft;
+  draft.blocks.resize(blocks_of(pairs.size()));
+  for_blocks(draft.blocks.size(), shop.options.threads, [&](std::size_t block) {
     const std::size_t first = block * kPointsInBlock;
-    blocks[block] = draft_block(pairs, first, std::min(pairs.size(), first + kPointsInBlock), shop);
+    draft.blocks[block] = draft_block(pairs, first, std::min(pairs.size(), first + kPointsInBlock), shop);
   });
-  if (blocks.size() == 1) return std::move(blocks.front());
-  Draft all;
-  all.pairs.reserve(pairs.size());
-  all.points.reserve(pairs.size());
-  all.places.reserve(pairs.size());
-  for (Draft& block : blocks) {
-    append(all.pairs, block.pairs);
-    append(all.points, block.points);
-    append(all.places, block.places);
-    append(all.refused, block.refused);
-    all.borrowed.insert(all.borrowed.end(), block.borrowed.begin(), block.borrowed.end());
-    block = {};
+  draft.places.reserve(pairs.size());
+  for (DraftBlock& block : draft.blocks) {
+    block.first = draft.places.size();
+    draft.places.insert(draft.places.end(), block.places.begin(), block.places.end());
+    block.places = {};
   }
-  return all;
+  return draft;
 }
 
 std::vector<SpectralSlope> spectral_slopes_of(const Draft& draft, const InstrumentModel& instrument) {
-  if (!instrument.spectral) return std::vector<SpectralSlope>(draft.pairs.size());
+  if (!instrument.spectral) return std::vector<SpectralSlope>(draft.places.size());
   std::vector<SpectralPoint> points;
-  for (std::size_t n = 0; n < draft.pairs.size(); ++n) {
-    const PairedPoint& pair = draft.pairs[n];
-    points.push_back({.planned = draft.places[n].planned,
-                      .wavelength = pair.wavelength,
-                      .over_certificate = pair.value / pair.standard.rho.value,
-                      .certificate = pair.standard.rho.value});
+  for (const DraftBlock& block : draft.blocks) {
+    for (const PairedPoint& pair : block.pairs) {
+      const double certificate = pair.standard.rho.value;
+      points.push_back({.planned = draft.places[points.size()].planned,
+                        .wavelength = pair.wavelength,
+                        .over_certificate = certificate > 0.0 ? pair.value / certificate : pair.value,
+                        .certificate = certificate > 0.0 ? certificate : 1.0});
+    }
   }
   return spectral_slopes(points);
 }
@@ -189,9 +193,15 @@ struct Neighbourhoods {
   std::vector<SpectralSlope> spectral;
 };
 
-void finish_point(std::size_t n, const Neighbourhoods& around, const Workshop& shop, Draft& draft, TermList& terms) {
-  PairedPoint& pair = draft.pairs[n];
-  CalibratedPoint& point = draft.points[n];
+CalibratedPoint finish_point(std::size_t n, const Neighbourhoods& around, const Workshop& shop, const Origin& origin,
+                             PairedPoint& pair, TermList& terms) {
+  CalibratedPoint point{.point_index = origin.point_index,
+                        .geometry = pair.sample.geometry,
+                        .wavelength = pair.wavelength,
+                        .value = {},
+                        .budget = {},
+                        .sample_reading = origin.sample_reading,
+                        .reference_reading = pair.reference_id};
   const DirectionSlopes& slopes = around.slopes[n];
   const ConeCorrection cones = cone_correction(pair, slopes, shop.instrument, shop.standard);
   if (!shop.options.left_out.cones) pair.value -= cones.bias;
@@ -208,7 +218,8 @@ void finish_point(std::size_t n, const Neighbourhoods& around, const Workshop& s
         shop.options.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(n) * 0x2545F491ULL;
     propagate_by_monte_carlo(pair.value, terms, bent, stream, point.budget);
   }
-  point.flags = flags_of(pair, point.budget, slopes, cones, draft.borrowed[n]);
+  point.flags = flags_of(pair, point.budget, slopes, cones, origin.is_borrowed);
+  return point;
 }
 
 // From a block's numbers of the components to the scan's.
@@ -219,24 +230,25 @@ void renumber(Budget& budget, const std::vector<std::uint32_t>& numbers) {
   }
 }
 
-std::vector<Component> finish_points(const Neighbourhoods& around, const Workshop& shop, Draft& draft) {
-  const std::size_t size = draft.points.size();
-  const std::size_t blocks = blocks_of(size);
-  std::vector<ComponentTable> tables(blocks);
-  const auto for_points = [&](std::size_t block, const auto& work) {
-    const std::size_t last = std::min(size, (block + 1) * kPointsInBlock);
-    for (std::size_t n = block * kPointsInBlock; n < last; ++n) work(n);
-  };
-  for_blocks(blocks, shop.options.threads, [&](std::size_t block) {
-    TermList terms(tables[block]);
-    for_points(block, [&](std::size_t n) { finish_point(n, around, shop, draft, terms); });
+std::vector<Component> finish_points(const Neighbourhoods& around, const Workshop& shop, Draft& draft,
+                                     std::vector<CalibratedPoint>& points) {
+  points.resize(draft.places.size());
+  std::vector<ComponentTable> tables(draft.blocks.size());
+  for_blocks(tables.size(), shop.options.threads, [&](std::size_t number) {
+    DraftBlock& block = draft.blocks[number];
+    TermList terms(tables[number]);
+    for (std::size_t k = 0; k < block.pairs.size(); ++k) {
+      points[block.first + k] = finish_point(block.first + k, around, shop, block.origins[k], block.pairs[k], terms);
+    }
+    block.pairs = {};
   });
-  if (blocks == 1) return tables.front().components();
+  if (tables.size() == 1) return tables.front().components();
   ComponentTable all;
   std::vector<std::vector<std::uint32_t>> numbers;
   for (const ComponentTable& table : tables) numbers.push_back(all.join(table));
-  for_blocks(blocks, shop.options.threads, [&](std::size_t block) {
-    for_points(block, [&](std::size_t n) { renumber(draft.points[n].budget, numbers[block]); });
+  for_blocks(tables.size(), shop.options.threads, [&](std::size_t number) {
+    const DraftBlock& block = draft.blocks[number];
+    for (std::size_t k = 0; k < block.origins.size(); ++k) renumber(points[block.first + k].budget, numbers[number]);
   });
   return all.components();
 }
@@ -249,13 +261,13 @@ double median(std::vector<double>& values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-ScanSummary summarise(const Draft& draft) {
-  ScanSummary summary{.points = draft.points.size(), .refused = draft.refused.size()};
+ScanSummary summarise(const std::vector<CalibratedPoint>& points, const Draft& draft) {
+  ScanSummary summary{.points = points.size()};
   std::vector<double> absolute;
   std::vector<double> relative;
-  absolute.reserve(draft.points.size());
-  relative.reserve(draft.points.size());
-  for (const CalibratedPoint& point : draft.points) {
+  absolute.reserve(points.size());
+  relative.reserve(points.size());
+  for (const CalibratedPoint& point : points) {
     absolute.push_back(point.budget.expanded.si());
     if (has(point.flags, PointFlag::NearZero))
       ++summary.near_zero;
@@ -264,9 +276,10 @@ ScanSummary summarise(const Draft& draft) {
   }
   double chi2 = 0.0;
   double dof = 0.0;
-  for (const PairedPoint& pair : draft.pairs) {
-    chi2 += pair.sample.frame_chi2 + pair.reference.frame_chi2;
-    dof += pair.sample.frame_dof + pair.reference.frame_dof;
+  for (const DraftBlock& block : draft.blocks) {
+    summary.refused += block.refused.size();
+    chi2 += block.frame_chi2;
+    dof += block.frame_dof;
   }
   summary.worst_relative_expanded = relative.empty() ? 0.0 : std::ranges::max(relative);
   summary.median_relative_expanded = median(relative);
@@ -317,11 +330,12 @@ Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel
   Draft draft = draft_scan(shop);
   const Neighbourhoods around{.slopes = direction_slopes(draft.places, scan.isotropic, options.threads),
                               .spectral = spectral_slopes_of(draft, instrument)};
-  CalibratedScan calibrated{
-      .components = finish_points(around, shop, draft), .points = {}, .refused = {}, .summary = {}};
-  calibrated.summary = summarise(draft);
-  calibrated.points = std::move(draft.points);
-  calibrated.refused = std::move(draft.refused);
+  CalibratedScan calibrated;
+  calibrated.components = finish_points(around, shop, draft, calibrated.points);
+  calibrated.summary = summarise(calibrated.points, draft);
+  for (DraftBlock& block : draft.blocks) {
+    std::ranges::move(block.refused, std::back_inserter(calibrated.refused));
+  }
   return calibrated;
 }
 
