@@ -295,6 +295,42 @@ TEST_F(ModbusStageTest, WritesAMoveAgainThatDidNotArrive) {
   EXPECT_EQ(link.writes_to(kMotionBlock).size(), 1U);
 }
 
+TEST_F(ModbusStageTest, StartsAMoveAndLooksInOneExchange) {
+  ASSERT_TRUE(stage.read_state());
+  link.transactions = 0;
+  link.on_write = [&](const ScriptedModbusLink::Write& write) {
+    if (write.first == kMotionBlock) link.registers[kAcceptedToken] = write.words[2];
+  };
+
+  const auto started = stage.start_move_and_look(theta_r_to(45.0), 0x00010002);
+
+  ASSERT_TRUE(started) << describe(started.error());
+  EXPECT_EQ(link.transactions, 1);
+  ASSERT_TRUE(started->seen);
+  EXPECT_EQ(started->seen->accepted_token, started->token);
+  EXPECT_THAT(link.writes_to(kMotionBlock),
+              ElementsAre(ElementsAre(1, 2, started->token, 0b10, 0, 0, 6, 0xDDD0, 0, 0, 0, 0, 0, 0, 0, 0, 1)));
+}
+
+TEST_F(ModbusStageTest, DoesNotTakeALookBesideAMoveThatKnowsNothingOfIt) {
+  const auto started = stage.start_move_and_look(theta_r_to(45.0), 1);
+
+  ASSERT_TRUE(started) << describe(started.error());
+  EXPECT_FALSE(started->seen) << "a stage that has not come to it, or a reply to something before";
+}
+
+TEST_F(ModbusStageTest, DoesNotStartAMoveTwiceWhenOnlyTheReplyToMoveAndLookWasLost) {
+  link.on_write = [&](const ScriptedModbusLink::Write& write) {
+    if (write.first == kMotionBlock) link.registers[kAcceptedToken] = write.words[2];
+  };
+  link.script = {Next::Obey, Next::LoseReply};
+
+  const auto started = stage.start_move_and_look(theta_r_to(1.0), 1);
+
+  ASSERT_TRUE(started) << describe(started.error());
+  EXPECT_EQ(link.writes_to(kMotionBlock).size(), 1U);
+}
+
 TEST_F(ModbusStageTest, NamesTheMoveWhenTheStageRefusesTheWrite) {
   link.script = {Next::Obey, Next::Exception};
 

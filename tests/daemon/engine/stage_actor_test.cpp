@@ -364,6 +364,50 @@ TEST_F(StageActorTest, WatchesTheGate) {
   EXPECT_EQ(answers[0].state->gate.count, 1U);
 }
 
+TEST_F(StageActorTest, BeginsAMoveByTheLookThatEndedTheExposureBeforeIt) {
+  ask(WatchGate{.ticket = 1, .after = 0, .expected = 200ms, .held = {}});
+  executor.run_for(100ms);
+  stage.state.gate.count = 1;
+  run_for_answers(1);
+  const int looks = stage.looks;
+  ask(move(2, 10.0));
+  executor.run_for(1ms);
+  EXPECT_EQ(stage.told, std::vector<std::string>{"move"});
+  EXPECT_EQ(stage.looks - looks, 1) << "after it was told";
+
+  run_for_answers(2);
+  EXPECT_TRUE(answers[1].state);
+}
+
+TEST_F(StageActorTest, LooksAnewBeforeAMoveLongAfterTheExposure) {
+  ask(WatchGate{.ticket = 1, .after = 0, .expected = 200ms, .held = {}});
+  executor.run_for(100ms);
+  stage.state.gate.count = 1;
+  run_for_answers(1);
+  executor.run_for(50ms);
+  stage.state.axes[stage::index_of(Axis::ThetaR)].homed = false;
+  const int looks = stage.looks;
+  ask(move(2, 10.0));
+  executor.run_for(1ms);
+
+  EXPECT_EQ(stage.looks - looks, 2);
+  run_for_answers(2);
+  EXPECT_FALSE(answers[1].state);
+}
+
+TEST_F(StageActorTest, FindsAStopBetweenTheExposureAndTheMove) {
+  ask(WatchGate{.ticket = 1, .after = 0, .expected = 200ms, .held = {}});
+  executor.run_for(100ms);
+  stage.state.gate.count = 1;
+  run_for_answers(1);
+  ++stage.state.stop_count;
+  ask(move(2, 10.0));
+  run_for_answers(2);
+
+  ASSERT_FALSE(answers[1].state);
+  EXPECT_EQ(answers[1].state.error().code, ErrorCode::Stopped);
+}
+
 TEST_F(StageActorTest, NoticesAPowerCycleWhileItWatchesTheGate) {
   ask(LookAtStage{1});
   ask(WatchGate{.ticket = 2, .after = 0, .expected = 200ms, .held = {}});
