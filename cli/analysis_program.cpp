@@ -18,15 +18,16 @@ std::vector<std::string> analysis_command(const FileJob& job, const std::string&
   const fs::path output =
       job.output.empty() ? fs::path(fs::path(job.file).stem().string() + "-" + what + ".x") : fs::path(job.output);
   const std::string folder = output.parent_path().empty() ? "." : output.parent_path().string();
-  std::vector<std::string> command{(fs::path(own_path).parent_path() / "gonio-analyse").string(),
-                                   "--file",
-                                   job.file,
-                                   "--into",
-                                   folder,
-                                   "--name",
-                                   output.stem().string(),
-                                   "--job",
-                                   api::to_json(api::AnalysisRequest{.kind = job.kind, .format = job.format})};
+  std::vector<std::string> command{
+      (fs::path(own_path).parent_path() / "gonio-analyse").string(),
+      "--file",
+      job.file,
+      "--into",
+      folder,
+      "--name",
+      output.stem().string(),
+      "--job",
+      api::to_json(api::AnalysisRequest{.kind = job.kind, .format = job.format, .model = job.model})};
   if (!job.as_json) command.emplace_back("--plain");
   return command;
 }

@@ -200,6 +200,15 @@ class CommandLine {
     plot.add_option("-o,--file", wanted_.result, "what the pictures' names begin with");
     CLI::App& report = scan_leaf(data, "report", "one page that a lab signs", Verb::DataReport);
     report.add_option("-o,--file", wanted_.result, "where to (scan-N-report.html)");
+    CLI::App& quantities = *leaf(data, "quantities", "rho_dh, A, RADF, R and R_rs, each with U", Verb::DataQuantities);
+    quantities.add_option("input", wanted_.input, "a scan's number, or a BRDF file")->required();
+    CLI::App& fit = *leaf(data, "fit", "models by their numbers, with U, correlation and what is left", Verb::DataFit);
+    fit.add_option("input", wanted_.input, "a scan's number, or a BRDF file")->required();
+    fit.add_option("--model", wanted_.model, "rpv, 'lambertian + ggx'; several with commas between");
+    fit.add_option("-o,--file", wanted_.result, "what the results' names begin with");
+    CLI::App& compare = scan_leaf(data, "compare", "two scans in units of what does not cancel", Verb::DataCompare);
+    compare.add_option("other", wanted_.other_scan, "the other scan's number")->required()->check(CLI::PositiveNumber);
+    compare.add_option("-o,--file", wanted_.result, "the table of differences");
     scan_leaf(data, "describe", "reflectances, and how far readings are from their neighbours", Verb::DataDescribe);
     add_data_files(data, formats);
     leaf(data, "jobs", "what the worker program did and does", Verb::DataJobs);

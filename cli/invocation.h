@@ -37,6 +37,9 @@ enum class Verb : std::uint8_t {
   Replay,
   DataExport,
   DataTrace,
+  DataQuantities,
+  DataFit,
+  DataCompare,
   DataPlot,
   DataReport,
   DataDescribe,
@@ -68,6 +71,7 @@ struct Invocation {
   std::string export_format = "csv";
   std::string input;       ///< a BRDF file
   std::string result;      ///< where results go; empty: here, under their own names
+  std::string model;       ///< to be fitted; empty: the usual ones
   std::int64_t job = 0;    ///< of the worker program
   std::int64_t point = 0;  ///< to be traced
   bool watch = false;

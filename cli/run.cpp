@@ -109,7 +109,13 @@ class Runner {
       case Verb::DataTrace:
         return take_job({.kind = "trace", .scan = wanted_.scan, .point = wanted_.point}, "-");
       case Verb::DataPlot:
-        return plot_data();
+        return take_job_of_either("plot");
+      case Verb::DataQuantities:
+        return take_job_of_either("quantities");
+      case Verb::DataFit:
+        return take_job_of_either("fit");
+      case Verb::DataCompare:
+        return take_job({.kind = "compare", .scan = wanted_.scan, .other_scan = wanted_.other_scan}, wanted_.result);
       case Verb::DataReport:
         return take_job({.kind = "report", .scan = wanted_.scan}, wanted_.result);
       case Verb::DataDescribe:
@@ -318,18 +324,19 @@ class Runner {
     return {.kind = kind,
             .file = wanted_.input,
             .format = kind == "export" ? wanted_.export_format : "",
+            .model = wanted_.model,
             .output = wanted_.result,
             .as_json = wanted_.format == Format::Json || wanted_.format == Format::Jsonl};
   }
 
-  // Of a scan's number, or of a file.
-  Result<int> plot_data() {
+  // Of a scan's number by the daemon, or of a file beside it.
+  Result<int> take_job_of_either(const std::string& kind) {
     std::int64_t scan = 0;
     const std::string& text = wanted_.input;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
     const bool is_number = error == std::errc() && end == text.data() + text.size() && scan > 0;
-    if (!is_number) return failure(become_analysis(file_job("plot")));
-    return take_job({.kind = "plot", .scan = scan}, wanted_.result);
+    if (!is_number) return failure(become_analysis(file_job(kind)));
+    return take_job({.kind = kind, .scan = scan, .model = wanted_.model}, wanted_.result);
   }
 
   // A job of the worker program: done, fetched, told of.

@@ -40,6 +40,9 @@ Result<void> check(const api::AnalysisRequest& request) {
     return failure(bad_request("format", "\"" + request.format + "\"", joined(api::kExportFormats)));
   }
   if (request.kind == "trace" && !request.point) return failure(bad_request("point", "none", "a point's number"));
+  if (request.kind == "compare" && request.other_scan <= 0) {
+    return failure(bad_request("other_scan", std::to_string(request.other_scan), "a scan's number"));
+  }
   if (request.scan <= 0) return failure(bad_request("scan", std::to_string(request.scan), "a scan's number"));
   if (!(request.deadline_s > 0.0 && request.deadline_s <= kLongestDeadline)) {
     return failure(bad_request("deadline_s", fmt::format("{} s", request.deadline_s), "above 0, up to 3600 s"));

@@ -8,13 +8,16 @@
 #include "base/read_file.h"
 #include "daemon/analysis/describe.h"
 #include "daemon/analysis/export_job.h"
+#include "daemon/analysis/fit_job.h"
 #include "daemon/analysis/gnuplot.h"
 #include "daemon/analysis/input_file.h"
 #include "daemon/analysis/plots.h"
 #include "daemon/analysis/report.h"
+#include "daemon/analysis/scan_data.h"
 #include "daemon/analysis/stored_scan.h"
 #include "daemon/analysis/trace.h"
 #include "daemon/app/calibration_desk.h"
+#include "reflectance/formats/scan_of_file.h"
 #include "reflectance/formats/write_aside.h"
 
 namespace gonio::analysis {
@@ -176,6 +179,91 @@ Result<AnalysisReport> run_report(const JobInput& input, Progress& progress) {
   return report;
 }
 
+// One channel: the first, or the one that was asked for by its name.
+Result<reflectance::MeasuredScan> channel_of(const Subject& subject, std::size_t channel) {
+  if (subject.scan) return scan_data(*subject.scan, subject.brdf, channel);
+  return formats::scan_of(subject.brdf, channel);
+}
+
+std::string channel_mark(const formats::MeasuredBrdf& brdf, std::size_t channel) {
+  return brdf.channels.size() == 1 ? "" : " at " + brdf.channels[channel].name;
+}
+
+Result<AnalysisReport> run_quantities(const JobInput& input, Progress& progress) {
+  progress.step(0.0, "reading the values");
+  const Result<Subject> subject = read_subject(input);
+  if (!subject) return failure(subject.error());
+  AnalysisReport report;
+  report.notes = subject->notes;
+  const std::size_t channels = subject->brdf.channels.size();
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    progress.step(0.1 + 0.9 * static_cast<double>(channel) / static_cast<double>(channels), "fitting and integrating");
+    const auto scan = channel_of(*subject, channel);
+    if (!scan) return failure(scan.error());
+    Result<std::vector<api::AnalysisFact>> facts = quantities_told(*scan, report.notes);
+    if (!facts) return failure(facts.error());
+    for (api::AnalysisFact& fact : *facts) {
+      fact.name += channel_mark(subject->brdf, channel);
+      report.facts.push_back(std::move(fact));
+    }
+  }
+  return report;
+}
+
+Result<AnalysisReport> run_fit(const JobInput& input, Progress& progress) {
+  progress.step(0.0, "reading the values");
+  const Result<Subject> subject = read_subject(input);
+  if (!subject) return failure(subject.error());
+  AnalysisReport report;
+  report.notes = subject->notes;
+  const std::size_t channels = subject->brdf.channels.size();
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    progress.step(0.1 + 0.8 * static_cast<double>(channel) / static_cast<double>(channels), "fitting");
+    const std::string stem = input.name + "-fit" + (channels == 1 ? "" : "-" + std::to_string(channel + 1));
+    const auto scan = channel_of(*subject, channel);
+    if (!scan) return failure(scan.error());
+    const Result<FitTold> told = fit_told(*scan, input.request.model, stem);
+    if (!told) return failure(told.error());
+    for (api::AnalysisFact fact : told->facts) {
+      fact.name += channel_mark(subject->brdf, channel);
+      report.facts.push_back(std::move(fact));
+    }
+    report.notes.insert(report.notes.end(), told->notes.begin(), told->notes.end());
+    if (!told->scene.empty()) {
+      GONIO_TRY(formats::write_aside(input.folder + "/" + stem + ".toml", told->scene));
+      report.files.push_back({.name = stem + ".toml", .bytes = std::ssize(told->scene)});
+    }
+    const Result<std::vector<api::AnalysisFile>> drawn = draw(input.folder, stem, told->residuals);
+    if (!drawn) return failure(drawn.error());
+    report.files.insert(report.files.end(), drawn->begin(), drawn->end());
+  }
+  return report;
+}
+
+Result<AnalysisReport> run_compare(const JobInput& input, Progress& progress) {
+  progress.step(0.0, "reading the first scan");
+  const Result<Subject> first = read_subject(input);
+  if (!first) return failure(first.error());
+  JobInput of_other = input;
+  of_other.request.scan = input.request.other_scan;
+  progress.step(0.3, "reading the second scan");
+  const Result<Subject> second = read_subject(of_other);
+  if (!second) return failure(second.error());
+  const auto a = channel_of(*first, 0);
+  if (!a) return failure(a.error());
+  const auto b = channel_of(*second, 0);
+  if (!b) return failure(b.error());
+  progress.step(0.6, "comparing");
+  const Result<ComparisonTold> told = comparison_told(*a, *b);
+  if (!told) return failure(told.error());
+  AnalysisReport report;
+  report.facts = told->facts;
+  const std::string name = fmt::format("{}-against-{}.csv", input.name, input.request.other_scan);
+  GONIO_TRY(formats::write_aside(input.folder + "/" + name, told->table));
+  report.files = {{.name = name, .bytes = std::ssize(told->table)}};
+  return report;
+}
+
 Result<AnalysisReport> run_trace(const JobInput& input, Progress& progress) {
   progress.step(0.0, "reading the scan");
   const auto reader = daemon::StoreReader::open(input.store_file);
@@ -202,7 +290,8 @@ Error no_such_kind(const JobInput& input) {
           .device = "analysis",
           .tried = "begin the job",
           .seen = "kind \"" + input.request.kind + "\"" + (input.store_file.empty() ? " of a file" : ""),
-          .limit = input.store_file.empty() ? "export, describe, plot" : "export, describe, plot, report, trace"};
+          .limit = input.store_file.empty() ? "export, describe, plot, quantities, fit"
+                                            : "export, describe, plot, quantities, fit, report, compare, trace"};
 }
 
 }  // namespace
@@ -214,6 +303,9 @@ Result<AnalysisReport> run_job(const JobInput& input, Progress& progress) {
   if (input.request.kind == "describe") report = run_describe(input, progress);
   if (input.request.kind == "plot") report = run_plot(input, progress);
   if (input.request.kind == "report" && has_store) report = run_report(input, progress);
+  if (input.request.kind == "quantities") report = run_quantities(input, progress);
+  if (input.request.kind == "fit") report = run_fit(input, progress);
+  if (input.request.kind == "compare" && has_store) report = run_compare(input, progress);
   if (input.request.kind == "trace" && has_store) report = run_trace(input, progress);
   if (!report) return report;
   report->kind = input.request.kind;

@@ -13,7 +13,8 @@
 namespace gonio::api {
 
 /// What the worker program can be asked for.
-inline constexpr std::array<std::string_view, 5> kAnalysisKinds{"export", "describe", "plot", "report", "trace"};
+inline constexpr std::array<std::string_view, 8> kAnalysisKinds{"export", "describe",   "plot", "report",
+                                                                "trace",  "quantities", "fit",  "compare"};
 /// Formats of an export. "csv+json" is our own, which loses nothing.
 inline constexpr std::array<std::string_view, 10> kExportFormats{"csv+json", "bird", "astm",  "zemax", "merl",
                                                                  "ssdd",     "pab",  "klems", "rgl",   "nexus"};
@@ -24,7 +25,9 @@ struct AnalysisRequest {
   std::int64_t scan = 0;              ///< whose result
   std::string format;                 ///< export: one of kExportFormats
   std::optional<std::int64_t> point;  ///< trace
-  double deadline_s = 600.0;          ///< up to 3600: the job is ended then
+  std::int64_t other_scan = 0;        ///< compare
+  std::string model;          ///< fit: "rpv", "lambertian + ggx", several with commas between; empty: the usual ones
+  double deadline_s = 600.0;  ///< up to 3600: the job is ended then
 };
 
 /// What a file does not hold of what was measured.
