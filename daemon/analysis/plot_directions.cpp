@@ -17,8 +17,8 @@ using reflectance::Direction;
 constexpr double kRadiansADegree = std::numbers::pi / 180.0;
 constexpr double kWideRange = 40.0;  // beyond it a linear scale shows one spot and nothing else
 constexpr std::size_t kPanels = 6;
-constexpr double kThetaStepDeg = 2.0;
-constexpr double kPhiStepDeg = 4.0;
+constexpr double kThetaStepDeg = 2.5;
+constexpr double kPhiStepDeg = 5.0;
 
 // matplotlib's viridis (Smith and van der Walt 2015): even steps are seen as even.
 constexpr const char* kPalette =
@@ -177,11 +177,12 @@ Picture polar_picture(const ChannelView& view) {
     const double t = groups[n].theta_i_deg;
     picture.script += fmt::format("set title 'θᵢ = {:.4g}°'\n", t);
     picture.script +=
-        "set label 1 '30°' at 22,22 tc rgb '#666666' front; set label 2 '60°' at 43,43 tc rgb '#666666' "
-        "front; set label 3 '90°' at 65,65 tc rgb '#666666' front\n";
+        "set style textbox opaque noborder fc rgb '#f2ffffff' margins 0.6,0.6\nset label 1 '30°' at 0,-30 center front "
+        "boxed font ',8'; set label 2 '60°' at 0,-60 center front boxed font ',8'; set label 3 '90°' at 0,-91 center "
+        "front boxed font ',8'\n";
     picture.script += fmt::format(
         "splot {} using 1:2:3 with pm3d, for [ring in '30 60 90'] ring*cos(u),ring*sin(u),0 with lines lc rgb "
-        "'#999999' dt 3 nocontour, {} using 1:2:(0) with points pt 7 ps 0.25 lc rgb '#ffffff', '+' using "
+        "'#999999' dt 3 nocontour, {} using 1:2:(0) with points pt 7 ps 0.12 lc rgb '#60ffffff', '+' using "
         "({:.6g}):(0):(0) "
         "every ::0::0 with points pt 4 ps 1.8 lw 2 lc rgb '#d62728', '+' using ({:.6g}):(0):(0) every ::0::0 with "
         "points "
@@ -204,11 +205,12 @@ Picture lobe_picture(const ChannelView& view) {
   const double reach = 1.05 * (scale.is_log ? std::cbrt(scale.most) : scale.most);
   picture.script += kPalette;
   picture.script += fmt::format(
-      "set view 62,25; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set xyplane "
+      "set view 66,30,1.9; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set "
+      "xyplane "
       "at "
       "0\nset xrange [{0:.6g}:{1:.6g}]; set yrange [{0:.6g}:{1:.6g}]; set zrange [0:{1:.6g}]; set cblabel 'f_r "
       "[sr⁻¹]'\n"
-      "set format cb '%.3g'; set cbrange [{2:.6g}:{3:.6g}]; set pm3d depthorder border lc rgb '#333333' lw 0.15; set "
+      "set format cb '%.3g'; set cbrange [{2:.6g}:{3:.6g}]; set pm3d depthorder; set "
       "angles degrees\n{4}",
       -reach, reach, scale.least, scale.most, scale.is_log ? "set logscale cb\n" : "");
   for (std::size_t n = 0; n < groups.size(); ++n) {
@@ -236,9 +238,9 @@ Picture cut_picture(const ChannelView& view) {
       "between all readings. Dashed: retro-reflection at θᵣ = θᵢ; dotted: the mirror direction.";
   picture.script +=
       "set grid lc rgb '#dddddd'; set xrange [-92:92]; set xtics 30\n"
-      "set xlabel 'θᵣ in the plane of incidence [°], mirror side negative'; set ylabel 'f_r [sr⁻¹]'\n"
-      "set key bottom center maxrows 1 samplen 2\n";
-  picture.script += scale.is_log ? "set logscale y; set format y '10^%T'\n" : "set yrange [*:*]\n";
+      "set xlabel 'θᵣ [°], mirror side negative'; set ylabel 'f_r [sr⁻¹]'\n"
+      "set key at screen 0.985,0.965 right maxrows 1 samplen 2; set pointintervalbox 0\n";
+  picture.script += scale.is_log ? "set logscale y; set format y '%g'\n" : "set yrange [*:*]\n";
   if (!scale.is_log && scale.least >= 0.0) picture.script += "set yrange [0:*]\n";
   for (std::size_t n = 0; n < groups.size(); ++n) {
     const std::string dots = table_name(view, "cut-readings", n);
@@ -253,6 +255,7 @@ Picture cut_picture(const ChannelView& view) {
         "plot {1} using 1:2 with lines lw 1.5 lc rgb '#35b779' title 'between readings', {2} using ($6 == 1 ? $5 : "
         "NaN):3:4 with yerrorbars pt 7 ps 0.6 lc rgb '#440154' title 'readings, U'\n",
         t, in_quotes(line), in_quotes(dots));
+    picture.script += "unset key\n";  // the first panel's stands for all
   }
   picture.script += "unset multiplot\n";
   return picture;
