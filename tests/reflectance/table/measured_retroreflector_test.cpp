@@ -21,7 +21,7 @@ namespace {
 
 std::filesystem::path data_folder() {
   if (const char* named = std::getenv("GONIO_SHARED_DATA")) return named;
-  return std::filesystem::path(__FILE__).parent_path() / "../../../../shared/data";
+  return std::filesystem::path(GONIO_SOURCE_DIR) / "../shared/data";
 }
 
 // ALTA text: lines of theta_i, theta_r cos(dphi), theta_r sin(dphi) [rad] and BRDF times cos(theta_r) [sr^-1]; '#'
