@@ -34,6 +34,7 @@ std::string kind_of_component(const std::string& name) {
   const std::size_t digit = bare.find_first_of("0123456789");
   if (digit == std::string::npos || digit == 0 || bare[digit - 1] != ' ') return bare;
   std::string kind = bare.substr(0, digit - 1);
+  if (kind.ends_with(",")) return kind.substr(0, kind.size() - 1);
   return kind.ends_with("s") ? kind : kind + "s";
 }
 

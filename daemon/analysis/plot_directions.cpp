@@ -205,7 +205,7 @@ Picture lobe_picture(const ChannelView& view) {
   const double reach = 1.05 * (scale.is_log ? std::cbrt(scale.most) : scale.most);
   picture.script += kPalette;
   picture.script += fmt::format(
-      "set view 66,30,1.9; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set "
+      "set view 66,30,1.7; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set "
       "xyplane "
       "at "
       "0\nset xrange [{0:.6g}:{1:.6g}]; set yrange [{0:.6g}:{1:.6g}]; set zrange [0:{1:.6g}]; set cblabel 'f_r "

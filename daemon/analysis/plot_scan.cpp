@@ -11,34 +11,34 @@ namespace {
 using daemon::HistoryReading;
 using daemon::HistoryVisit;
 
-constexpr double kSecondsAnHour = 3600.0;
+constexpr double kSecondsAMinute = 60.0;
 constexpr double kPercentOf = 100.0;
 
-double hours_after(UtcTime at, UtcTime start) {
-  return in_seconds(at - start) / kSecondsAnHour;
+double minutes_after(UtcTime at, UtcTime start) {
+  return in_seconds(at - start) / kSecondsAMinute;
 }
 
 std::string readings_history(const std::vector<HistoryReading>& readings) {
   double sum = 0.0;
   for (const HistoryReading& r : readings) sum += r.monitor_mean;
   const double mean = readings.empty() || sum == 0.0 ? 1.0 : sum / static_cast<double>(readings.size());
-  std::string text = "# hours monitor_percent lamp_c detector_c room_c humidity_percent\n";
+  std::string text = "# minutes monitor_percent lamp_c detector_c room_c humidity_percent\n";
   for (const HistoryReading& r : readings) {
-    text += fmt::format("{:.6f} {:.6g} {:.5g} {:.5g} {:.5g} {:.4g}\n", hours_after(r.at, readings.front().at),
+    text += fmt::format("{:.6f} {:.6g} {:.5g} {:.5g} {:.5g} {:.4g}\n", minutes_after(r.at, readings.front().at),
                         kPercentOf * (r.monitor_mean / mean - 1.0), r.lamp_temperature_c, r.detector_temperature_c,
                         r.room_temperature_c, r.humidity_percent);
   }
   return text;
 }
 
-// One block an exposure: hours, DN.
+// One block an exposure: minutes, DN.
 std::string dark_history(const std::vector<HistoryReading>& readings, std::vector<double>& exposures) {
   std::map<double, std::string> blocks;
   for (const HistoryReading& r : readings) {
     if (!r.is_dark) continue;
-    blocks[r.exposure_s] += fmt::format("{:.6f} {:.8g}\n", hours_after(r.at, readings.front().at), r.mean_dn);
+    blocks[r.exposure_s] += fmt::format("{:.6f} {:.8g}\n", minutes_after(r.at, readings.front().at), r.mean_dn);
   }
-  std::string text = "# a block an exposure: hours dark_dn\n";
+  std::string text = "# a block an exposure: minutes dark_dn\n";
   for (const auto& [exposure, block] : blocks) {
     exposures.push_back(exposure);
     text += block + "\n\n";
@@ -48,13 +48,13 @@ std::string dark_history(const std::vector<HistoryReading>& readings, std::vecto
 
 // Levels of one kind relative to their first, with u.
 std::string visit_history(const std::vector<HistoryVisit>& visits, std::string_view kind, UtcTime start) {
-  std::string text = "# hours level_percent u_percent\n";
+  std::string text = "# minutes level_percent u_percent\n";
   double first = 0.0;
   for (const HistoryVisit& v : visits) {
     if (v.kind != kind) continue;
     if (first == 0.0) first = v.level;
     if (first == 0.0) continue;
-    text += fmt::format("{:.6f} {:.6g} {:.3g}\n", hours_after(v.at, start), kPercentOf * (v.level / first - 1.0),
+    text += fmt::format("{:.6f} {:.6g} {:.3g}\n", minutes_after(v.at, start), kPercentOf * (v.level / first - 1.0),
                         kPercentOf * v.u_relative);
   }
   return text;
@@ -120,7 +120,7 @@ Picture drift_picture(const std::string& stem, const daemon::ScanHistory& histor
   picture.tables.emplace_back(darks, dark_history(history.readings, exposures));
   std::string& s = picture.script;
   s = "set palette defined (0 '#440154', 1 '#31688e', 2 '#35b779', 3 '#fde725'); unset colorbox\nset multiplot layout "
-      "2,2 title 'Course of the scan' font ',15'\nset grid lc rgb '#dddddd'; set xlabel 'hours since the "
+      "2,2 title 'Course of the scan' font ',15'\nset grid lc rgb '#dddddd'; set xlabel 'minutes since the "
       "first reading'; set key top left samplen 1 font ',9'\n";
   s += fmt::format(
       "set title 'Lamp monitor'; set ylabel 'from its mean [%]'\nplot {} using 1:2 with points pt 7 ps 0.25 lc "

@@ -13,7 +13,7 @@ namespace gonio::analysis {
 [[nodiscard]] Picture budget_picture(const std::string& stem, const std::vector<BudgetLine>& lines);
 
 /// The lamp's monitor, the levels of the standard and of the sample seen by visits, the dark, and the environment, by
-/// hours since the scan's first reading.
+/// minutes since the scan's first reading.
 [[nodiscard]] Picture drift_picture(const std::string& stem, const daemon::ScanHistory& history);
 
 }  // namespace gonio::analysis

@@ -61,6 +61,15 @@ std::string reading_line(const daemon::TracedReading& r) {
   return text + (r.used ? "\n" : ", not used\n");
 }
 
+// A dark is subtracted from readings of its own exposure.
+bool is_exposed_alike(const daemon::PointTrace& trace, const daemon::TracedReading& dark) {
+  return std::ranges::any_of(trace.attempts, [&](const daemon::TracedAttempt& attempt) {
+    return std::ranges::any_of(attempt.readings, [&](const daemon::TracedReading& lit) {
+      return lit.exposure_s == dark.exposure_s && lit.gain_db == dark.gain_db;
+    });
+  });
+}
+
 std::string attempt_lines(const daemon::TracedAttempt& a) {
   std::string text = fmt::format("{} attempt {} (try {}, {}): {}", a.target, a.attempt, a.number, a.utc, a.outcome);
   if (a.in_force) text += ", in force";
@@ -96,8 +105,12 @@ Result<std::string> trace_text(const StoredScan& scan, const daemon::PointTrace&
     text += "the standard was not read for this point: a value without it rests on the same geometry's reading\n";
   }
   for (const daemon::TracedVisit& dark : trace.darks) {
-    text += fmt::format("{} visit {} ({}), beside these attempts\n", dark.kind, dark.visit, dark.utc);
-    for (const daemon::TracedReading& reading : dark.readings) text += reading_line(reading);
+    // A budget counts visits and attempts as one list (StoreReader::readings).
+    text += fmt::format("{} visit {} ({}), beside these attempts; in the budget: visit {}\n", dark.kind, dark.visit,
+                        dark.utc, 2 * dark.visit + 1);
+    for (const daemon::TracedReading& reading : dark.readings) {
+      if (is_exposed_alike(trace, reading)) text += reading_line(reading);
+    }
   }
   return text;
 }
