@@ -145,6 +145,37 @@ Result<std::vector<ReportPicture>> drawn_for_page(const JobInput& input, const s
   return drawn;
 }
 
+// One channel as data.
+Result<reflectance::MeasuredScan> channel_of(const Subject& subject, std::size_t channel) {
+  if (subject.scan) return scan_data(*subject.scan, subject.brdf, channel);
+  return formats::scan_of(subject.brdf, channel);
+}
+
+std::string channel_mark(const formats::MeasuredBrdf& brdf, std::size_t channel) {
+  return brdf.channels.size() == 1 ? "" : " at " + brdf.channels[channel].name;
+}
+
+// Reflectances with U of each channel, in place of those that describe_brdf has without.
+Result<std::vector<api::AnalysisFact>> facts_for_page(const Subject& subject, std::vector<std::string>& notes) {
+  Result<std::vector<api::AnalysisFact>> facts = describe_brdf(subject.brdf, notes);
+  if (!facts) return facts;
+  for (std::size_t channel = 0; channel < subject.brdf.channels.size(); ++channel) {
+    const auto scan = channel_of(subject, channel);
+    if (!scan) return failure(scan.error());
+    const auto with_u = quantities_told(*scan, notes);
+    if (!with_u) {
+      notes.push_back("no reflectance with U: " + describe(with_u.error()));
+      return facts;
+    }
+    if (channel == 0) std::erase_if(*facts, [](const auto& fact) { return fact.name.starts_with("rho_dh"); });
+    for (api::AnalysisFact fact : *with_u) {
+      fact.name += channel_mark(subject.brdf, channel);
+      facts->push_back(std::move(fact));
+    }
+  }
+  return facts;
+}
+
 Result<AnalysisReport> run_report(const JobInput& input, Progress& progress) {
   progress.step(0.0, "reading the scan");
   const Result<Subject> subject = read_subject(input);
@@ -153,7 +184,7 @@ Result<AnalysisReport> run_report(const JobInput& input, Progress& progress) {
   if (!history) return failure(history.error());
   progress.step(0.1, "integrating, and asking neighbours of each reading");
   std::vector<std::string> notes = subject->notes;
-  Result<std::vector<api::AnalysisFact>> facts = describe_brdf(subject->brdf, notes);
+  Result<std::vector<api::AnalysisFact>> facts = facts_for_page(*subject, notes);
   if (!facts) return failure(facts.error());
   std::vector<std::string> said_already;  // by describe_brdf
   std::vector<Picture> pictures = pictures_of(subject->brdf, input.name, said_already);
@@ -177,16 +208,6 @@ Result<AnalysisReport> run_report(const JobInput& input, Progress& progress) {
   report.files = {{.name = name, .bytes = std::ssize(page)}};
   report.notes = notes;
   return report;
-}
-
-// One channel: the first, or the one that was asked for by its name.
-Result<reflectance::MeasuredScan> channel_of(const Subject& subject, std::size_t channel) {
-  if (subject.scan) return scan_data(*subject.scan, subject.brdf, channel);
-  return formats::scan_of(subject.brdf, channel);
-}
-
-std::string channel_mark(const formats::MeasuredBrdf& brdf, std::size_t channel) {
-  return brdf.channels.size() == 1 ? "" : " at " + brdf.channels[channel].name;
 }
 
 Result<AnalysisReport> run_quantities(const JobInput& input, Progress& progress) {

@@ -92,13 +92,16 @@ std::string summary_section(const ReportParts& parts) {
        u.median ? "median " + percent(*u.median) + ", worst " + percent(*u.worst) + " (95.45 %, points told from zero)"
                 : std::string("no value is told from zero")}};
   for (const api::AnalysisFact& fact : parts.facts) {
-    if (!fact.name.starts_with("rho_dh") && !fact.name.ends_with(" f_r")) continue;
+    if (fact.name.starts_with("cross-validated") || fact.name.find("points") != std::string::npos ||
+        fact.name.starts_with("incidences") || fact.name == "channels") {
+      continue;
+    }
     facts.emplace_back(html_text(fact.name), fact_value(fact) + " (" + html_text(fact.note) + ")");
   }
   return "<h2>Result</h2>\n" + html_facts(facts) +
          fmt::format(
              "<p>Counts: <code>gonioctl scan show {0}</code>. All values: <code>gonioctl data export {0}</code>. "
-             "Integrals: <code>gonioctl data describe {0}</code>. Each value down to its raw readings: "
+             "Integrals: <code>gonioctl data quantities {0}</code>. Each value down to its raw readings: "
              "<code>gonioctl data trace {0} POINT</code>.</p>\n",
              info.id);
 }
