@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "daemon/analysis/input_file.h"
+#include "daemon/analysis/stored_scan.h"
 #include "tests/daemon/analysis/stored_scans.h"
 #include "tests/support/process.h"
 
@@ -90,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Formats, BrightReading,
                          testing::Values(Readable{"csv+json", 1e-5}, Readable{"bird", 1e-5}, Readable{"astm", 1e-5},
                                          Readable{"nexus", 1e-5}, Readable{"ssdd", 1e-5}, Readable{"zemax", 3.0},
                                          Readable{"merl", 1.5}, Readable{"rgl", 3.0}),
-                         [](const auto& info) {
-                           std::string name = info.param.format;
+                         [](const auto& of) {
+                           std::string name = of.param.format;
                            std::erase(name, '+');
                            return name;
                          });

@@ -60,8 +60,8 @@ TEST_P(MeasuredFile, IsReadIntegratedAndWrittenAgain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, MeasuredFile, testing::Values("retro-3m-yellow.alta", "anoblack-ec1.zemax.bsdf"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& of) {
+                           std::string name = of.param;
                            std::erase_if(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
                            return name;
                          });
