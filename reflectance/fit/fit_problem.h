@@ -17,6 +17,8 @@ struct FitReading {
   PairTerms pair;
   double value = 0.0;
   ReadingError error;
+  /// Effects whose pattern is not known: their size stands in error.u_random.
+  reflectance::SharedEffects unsure;
 };
 
 /// The model's free numbers, each as its place between its bounds.

@@ -35,6 +35,17 @@ Result<void> check_request(const MeasuredScan& scan, const FitModel& model, cons
   return {};
 }
 
+void add_errors(const MeasuredScan& scan, const MeasuredPoint& p, FitReading& reading) {
+  std::vector<reflectance::SharedEffect> known;
+  std::vector<reflectance::SharedEffect> unsure;
+  for (const reflectance::SharedEffect& e : p.shared) {
+    (scan.components[e.component].is_pattern_known ? known : unsure).push_back(e);
+  }
+  reading.unsure = reflectance::SharedEffects(unsure);
+  reading.error = {.u_random = std::hypot(p.u_random.si(), size_of(reading.unsure)),
+                   .shared = reflectance::SharedEffects(known)};
+}
+
 Result<std::vector<FitReading>> readings_of(const MeasuredScan& scan, const FitModel& model, FitWeights weights) {
   std::vector<FitReading> readings;
   for (const std::size_t k : reflectance::usable_points(scan)) {
@@ -48,9 +59,7 @@ Result<std::vector<FitReading>> readings_of(const MeasuredScan& scan, const FitM
         .pair = pair_terms(reflectance::incident_direction(p.geometry), reflectance::reflected_direction(p.geometry)),
         .value = p.value.si(),
         .error = {.u_random = 1.0, .shared = {}}};
-    if (weights == FitWeights::Stated) {
-      reading.error = {.u_random = p.u_random.si(), .shared = reflectance::SharedEffects(p.shared)};
-    }
+    if (weights == FitWeights::Stated) add_errors(scan, p, reading);
     readings.push_back(std::move(reading));
   }
   return readings;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "reflectance/check/chi_square.h"
 #include "reflectance/fit/dense_algebra.h"
@@ -40,6 +41,29 @@ Covariance covariance_of(std::span<const double> slopes, std::size_t free, doubl
     }
   }
   return covariance;
+}
+
+// An error of unknown pattern is in the covariance as if it were each reading's own; it may as well be one.
+void add_unsure(SquareMatrix& covariance, std::span<const double> slopes, const ScanWhitening& whitening,
+                std::span<const FitReading> readings) {
+  std::map<std::uint32_t, std::vector<double>> moved;  // by component: what one standard deviation does to the numbers
+  const SquareMatrix as_random = covariance;
+  const std::size_t free = covariance.size;
+  for (std::size_t j = 0; j < readings.size(); ++j) {
+    for (const auto& entry : readings[j].unsure.entries()) {
+      std::vector<double>& sum = moved.try_emplace(entry.component, free, 0.0).first->second;
+      for (std::size_t a = 0; a < free; ++a) {
+        for (std::size_t b = 0; b < free; ++b) {
+          sum[a] += as_random.at(a, b) * slopes[j * free + b] / whitening.u_random(j) * entry.per_sd;
+        }
+      }
+    }
+  }
+  for (const auto& [component, sum] : moved) {
+    for (std::size_t a = 0; a < free; ++a) {
+      for (std::size_t b = 0; b < free; ++b) covariance.at(a, b) += sum[a] * sum[b];
+    }
+  }
 }
 
 void add_correlation(FitResult& result, const SquareMatrix& covariance) {
@@ -145,8 +169,10 @@ void add_statistics(FitResult& result, const reflectance::MeasuredScan& scan, co
   }
   result.aicc = aicc_of(result, free);
   const Covariance covariance = covariance_of(slopes, free, variance_scale);
+  Covariance whole = covariance;
+  add_unsure(whole.matrix, slopes, whitening, readings);
   add_parameters(result, numbers, place);
-  add_uncertainties(result, numbers, place, covariance);
+  add_uncertainties(result, numbers, place, whole);
   for (std::size_t k = 0; k < free; ++k) {
     FittedParameter& p = result.parameters[numbers.index(k)];
     p.per_reading = dependence(k, covariance.matrix, slopes, whitening, readings, scan.points.size());

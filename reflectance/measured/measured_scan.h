@@ -16,6 +16,9 @@ namespace gonio::reflectance {
 struct ScanComponent {
   std::string name;    ///< "certificate", "zero theta_i"
   std::string source;  ///< what error it is, for other scans: equal texts are one error; empty: this scan's own
+  /// Whether the effects on the points go together as they are stated. False for what bounds an error whose pattern
+  /// nobody knows (slopes that the readings do not resolve): a fit must not take its course for known and subtract it.
+  bool is_pattern_known = true;
 };
 
 /// One value of a scan.
