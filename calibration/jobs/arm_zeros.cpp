@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -120,10 +121,16 @@ std::optional<Parabola> parabola_through(const std::vector<LobePoint>& points, d
 std::optional<Centre> centre_of(const Crossing& crossing, std::vector<LobePoint> points, double u_repeat) {
   constexpr double kDeepest = 3.0;  // ln 20
   if (points.empty()) return std::nullopt;
-  const auto top = *std::ranges::max_element(points, {}, &LobePoint::ln_q);
-  std::erase_if(points, [&](const LobePoint& p) { return p.ln_q < top.ln_q - kDeepest; });
-  constexpr std::size_t kLeastPoints = 4;
-  if (points.size() < kLeastPoints) return std::nullopt;
+  std::ranges::sort(points, std::ranges::greater(), &LobePoint::ln_q);
+  const LobePoint top = points.front();
+  // Five at least, where they stand clear of the noise.
+  constexpr std::ptrdiff_t kLeastPoints = 5;
+  constexpr double kNoise = 0.1;
+  const auto is_low = [&](const LobePoint& p) { return p.ln_q < top.ln_q - kDeepest; };
+  const auto tail = points.begin() + std::min(kLeastPoints, std::ssize(points));
+  points.erase(std::remove_if(tail, points.end(), is_low), points.end());
+  std::erase_if(points, [](const LobePoint& p) { return p.u > kNoise; });
+  if (std::ssize(points) < kLeastPoints - 1) return std::nullopt;
   std::optional<Parabola> line = parabola_through(points, top.x, {}, 0.0);
   for (int round = 0; round < 3 && line; ++round) line = parabola_through(points, top.x, *line, u_repeat);
   if (!line || !(line->c[2] < 0.0)) return std::nullopt;
@@ -224,7 +231,17 @@ struct Crossings {
   std::vector<Row> rows;
   std::size_t places = 0;  // theta_i with both
   std::size_t across_normal = 0;
+  std::string without_peak;  // the crossings that had none, in words
 };
+
+std::string words_of(const Crossing& crossing, std::size_t points) {
+  const double theta_i = in_degrees(crossing.theta_i);
+  if (crossing.along == Crossing::Along::Normal) {
+    return fmt::format("across the normal at azimuth {:.0f} deg ({} points)", in_degrees(crossing.phi_r), points);
+  }
+  return fmt::format("along {} at theta_i {:.1f} deg ({} points)",
+                     crossing.along == Crossing::Along::ThetaR ? "theta_r" : "phi_r", theta_i, points);
+}
 
 Crossings measured_crossings(const ScanReadings& scan, const InstrumentModel& instrument) {
   Crossings all;
@@ -234,7 +251,10 @@ Crossings measured_crossings(const ScanReadings& scan, const InstrumentModel& in
     // it has one error there, which no number of points makes smaller.
     const double u_repeat = in_radians(instrument.angles.u_repeat);
     std::optional<Centre> centre = centre_of(crossing, points, std::numbers::sqrt2 * u_repeat);
-    if (!centre) continue;
+    if (!centre) {
+      all.without_peak += (all.without_peak.empty() ? "" : ", ") + words_of(crossing, points.size());
+      continue;
+    }
     centre->u = std::hypot(centre->u, u_repeat);
     all.rows.push_back(row_of(*centre));
     if (crossing.along == Crossing::Along::Normal) {
@@ -252,11 +272,13 @@ Result<FoundValues> fit_arm_zeros(const ScanReadings& scan, const InstrumentMode
                                   const ArmZeroOptions& options) {
   const Crossings crossings = measured_crossings(scan, instrument);
   if (crossings.places < kLeastPlaces) {
-    return failure({.code = ErrorCode::IncompleteData,
-                    .device = "mirror",
-                    .tried = "fit the zeros of the arms",
-                    .seen = fmt::format("the mirror's lobe was crossed both ways at {} theta_i", crossings.places),
-                    .limit = "three at least, with the peak inside of both crossings"});
+    return failure(
+        {.code = ErrorCode::IncompleteData,
+         .device = "mirror",
+         .tried = "fit the zeros of the arms",
+         .seen = fmt::format("the mirror's lobe was crossed both ways at {} theta_i; without a peak: {}",
+                             crossings.places, crossings.without_peak.empty() ? "none" : crossings.without_peak),
+         .limit = "three at least, with the peak inside of both crossings"});
   }
   const bool crosses_normal = crossings.across_normal >= kLeastPlaces;
   const Result<Solution> solution =

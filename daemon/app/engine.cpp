@@ -58,6 +58,8 @@ Engine::Engine(Config config, EngineDevices devices, StoreWriter& writer, const 
   desk_ = std::make_unique<SequencerDesk>(SequencerConfig{.instrument = config_.instrument, .epoch = halt_.epoch()},
                                           ports(), now());
   if (config_.by_hand_from) return;
+  // A tape begins with an empty store.
+  if (config_.tape == nullptr) (void)calibrator_->post([this] { compute_what_is_missing(); });
   sequencer_thread_ = std::thread([this] { run_sequencer(); });
   pthread_setname_np(sequencer_thread_.native_handle(), "sequencer");
 }
@@ -288,6 +290,20 @@ void Engine::publish(const EventRecord& event) {
     compute_brdf_of(event.scan, asked);  // the tape says when the store takes it
   } else if (!calibrator_->post([this, scan = event.scan, asked] { compute_brdf_of(scan, asked); })) {
     log_warning(fmt::format("scan {}: its BRDF is computed when it is asked for", event.scan));
+  }
+}
+
+// A daemon that was killed between a scan's end and its BRDF leaves a job's findings unmade.
+void Engine::compute_what_is_missing() {
+  constexpr int kNewest = 100;
+  const Result<std::unique_ptr<StoreReader>> reader = StoreReader::open(config_.store_file);
+  if (!reader) return log_error(describe(reader.error()));
+  const Result<std::vector<ScanInfo>> scans = (*reader)->scans(0, kNewest);
+  if (!scans) return log_error(describe(scans.error()));
+  for (const ScanInfo& scan : *scans) {
+    if (scan.state != ScanState::Done && scan.state != ScanState::FinishedEarly) continue;
+    const Result<BrdfInfo> brdf = (*reader)->brdf(scan.id);
+    if (!brdf && brdf.error().code == ErrorCode::NotFound) compute_brdf_of(scan.id, std::nullopt);
   }
 }
 

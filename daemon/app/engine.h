@@ -99,6 +99,7 @@ class Engine {
   void on_halt(const HaltPathReport& report);
   void on_reply(const CommandReply& reply);
   void publish(const EventRecord& event);
+  void compute_what_is_missing();
   void compute_brdf_of(ScanId scan, const AskedVersions& asked);
   void tell(SequencerMessage message);
   void run_sequencer();

@@ -12,7 +12,9 @@
 #include "calibration/jobs/control_chart.h"
 #include "calibration/jobs/linearity_ladder.h"
 #include "daemon/app/calibration_desk.h"
+#include "daemon/app/version_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/store/version_list.h"
 #include "protocol/api/plan.h"
 
 namespace gonio::daemon {
@@ -74,8 +76,19 @@ Result<FoundValues> fitted(const api::PlanCalibration& wanted, const calibration
                         "all of them: a mean of other points is another quantity"));
 }
 
+// Of what was found before: all that the scan's BRDF was computed with, but for the zeros of the arms, which a job
+// finds from the encoders' own angles.
+Result<ModelOfVersions> model_of(const NewBrdf& brdf, StoreReader& reader, const Instrument& instrument,
+                                 const calibration::ScanReadings& readings) {
+  const Result<std::vector<FoundCalibration>> all = reader.found_calibrations();
+  if (!all) return failure(all.error());
+  Result<ModelOfVersions> chosen = model_with(*all, brdf.versions, instrument, readings);
+  if (chosen) chosen->model.angles = instrument.model.angles;
+  return chosen;
+}
+
 std::string inputs_of(ScanId scan, const ScanTexts& texts, const Instrument& instrument,
-                      const calibration::ScanReadings& readings) {
+                      const calibration::ScanReadings& readings, const std::vector<CalibrationVersion>& versions) {
   std::size_t frames = 0;
   for (const calibration::RawReading& reading : readings.readings) frames += reading.frames.size();
   return nlohmann::json{{"scan", scan},
@@ -84,6 +97,7 @@ std::string inputs_of(ScanId scan, const ScanTexts& texts, const Instrument& ins
                         {"first_reading", readings.readings.empty() ? 0 : readings.readings.front().id},
                         {"last_reading", readings.readings.empty() ? 0 : readings.readings.back().id},
                         {"detector", instrument.detector.serial},
+                        {"calibrations", version_list_text(versions)},
                         {"instrument_sha256", texts.instrument_sha256},
                         {"plan_sha256", texts.plan_sha256}}
       .dump();
@@ -126,13 +140,16 @@ Result<std::optional<NewFoundCalibration>> fit_job(StoreReader& reader, ScanId s
   if (!instrument) return failure(instrument.error());
   const auto readings = reader.readings(scan, instrument->stage);
   if (!readings) return failure(readings.error());
-  Result<FoundValues> found = fitted(*plan->calibration, *readings, instrument->model, brdf);
+  Result<ModelOfVersions> chosen = model_of(brdf, reader, *instrument, *readings);
+  if (!chosen) return failure(chosen.error());
+  Result<FoundValues> found = fitted(*plan->calibration, *readings, chosen->model, brdf);
   if (!found) return failure(found.error());
-  return std::optional(NewFoundCalibration{.scan = scan,
-                                           .job = std::string(calibration_job_name(plan->calibration->job)),
-                                           .code_version = std::string(kJobCode),
-                                           .inputs_json = inputs_of(scan, *texts, *instrument, *readings),
-                                           .found = std::move(*found)});
+  return std::optional(
+      NewFoundCalibration{.scan = scan,
+                          .job = std::string(calibration_job_name(plan->calibration->job)),
+                          .code_version = std::string(kJobCode),
+                          .inputs_json = inputs_of(scan, *texts, *instrument, *readings, chosen->versions),
+                          .found = std::move(*found)});
 }
 
 NewEvent event_found(const NewFoundCalibration& found) {
