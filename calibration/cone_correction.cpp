@@ -53,9 +53,9 @@ Angle spacing(const std::vector<Angle>& nodes, Angle at) {
 }
 
 // Slopes and second derivatives of ln-free s(G) by central differences over the table's own spacing, kept within it.
-DirectionSlopes bends_of(const ReferenceStandard& standard, const Geometry& g) {
+DirectionSlopes bends_of(const ReferenceStandard& standard, const Geometry& g, Wavelength wavelength) {
   DirectionSlopes s;
-  const double middle = standard.shape(g);
+  const double middle = standard.shape(g, wavelength);
   const auto fill = [&](std::size_t axis, Angle step, Angle last) {
     const auto angle = [axis](Geometry& at) -> Angle& {
       return axis == 0 ? at.theta_i : axis == 1 ? at.theta_r : at.phi_r;
@@ -67,12 +67,12 @@ DirectionSlopes bends_of(const ReferenceStandard& standard, const Geometry& g) {
     angle(low) -= reach;
     angle(high) += reach;
     const double h = reach.si();
-    const double rise = standard.shape(high) - middle;
-    const double fall = middle - standard.shape(low);
+    const double rise = standard.shape(high, wavelength) - middle;
+    const double fall = middle - standard.shape(low, wavelength);
     s.slope[axis] = (rise + fall) / (2.0 * h);
     s.curvature[axis] = reach < step ? 0.0 : (rise - fall) / (h * h);  // at the edge no bend is seen
   };
-  const ShapeTable& table = standard.table();
+  const ShapeTable& table = standard.shapes().front().table;
   fill(0, spacing(table.theta_i(), g.theta_i), standard.last_theta_i());
   fill(1, spacing(table.theta_r(), g.theta_r), standard.last_theta_r());
   const Angle dphi = wrapped(g.phi_r - g.phi_i);
@@ -91,7 +91,7 @@ ConeCorrection cone_correction(const PairedPoint& point, const DirectionSlopes& 
   const double detector = kappa(cones.detector_half.value);
   const ConeOperator i = operator_of(slopes, 0, point.sample.geometry.theta_i);
   const ConeOperator r = operator_of(slopes, 1, point.sample.geometry.theta_r);
-  const DirectionSlopes bends = bends_of(standard, point.reference.geometry);
+  const DirectionSlopes bends = bends_of(standard, point.reference.geometry, point.wavelength);
   const bool has_standard = point.mode != ReferenceMode::Absolute;
   const double per_shape = has_standard ? point.value / point.standard.shape : 0.0;
   const double i_ref = per_shape * operator_of(bends, 0, point.reference.geometry.theta_i).value;

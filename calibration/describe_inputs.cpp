@@ -137,13 +137,17 @@ std::string describe_inputs(const InstrumentModel& instrument, const ReferenceSt
   text.line("certificate", {static_cast<double>(c.geometry), c.specular_port.value_or(Angle{}).si(), c.coverage_factor,
                             c.longest_gap.si()});
   for (const CertificateEntry& e : c.entries) text.line("entry", {e.wavelength.si(), e.reflectance, e.u});
-  const ShapeTable& table = standard.table();
+  if (c.correlation != 1.0) text.line("correlation", {c.correlation});
+  const ShapeTable& table = standard.shapes().front().table;
   for (const auto* grid : {&table.theta_i(), &table.theta_r(), &table.phi()}) {
     std::vector<double> nodes;
     for (const Angle angle : *grid) nodes.push_back(angle.si());
     text.line("grid", nodes);
   }
-  text.line("values", table.values());
+  for (const SpectralShape& shape : standard.shapes()) {
+    if (standard.shapes().size() > 1) text.line("shape", {shape.wavelength.si()});
+    text.line("values", shape.table.values());
+  }
   for (const ShapeMode& m : standard.modes()) {
     text.line("mode " + m.name, {static_cast<double>(m.kind), m.u, m.width.si()});
   }

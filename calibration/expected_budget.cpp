@@ -41,7 +41,7 @@ Result<void> expect_standard(PairedPoint& pair, const Expectation& expectation, 
   pair.reference.at = pair.sample.at + expectation.apart;
   GONIO_TRY(standard.check_reach(pair.wavelength, pair.reference.geometry));
   pair.standard.rho = standard.reflectance(pair.wavelength).value();
-  pair.standard.shape = standard.shape(pair.reference.geometry);
+  pair.standard.shape = standard.shape(pair.reference.geometry, pair.wavelength);
   GeometryRatio ratio = geometry_ratio(pair.sample.geometry, pair.reference.geometry, instrument);
   pair.sample_log_slope = ratio.sample_slope;
   pair.reference_log_slope = ratio.reference_slope;

@@ -109,27 +109,43 @@ class PointTerms {
     return instrument_.angles.u_repeat.si() * std::sqrt(sum);
   }
 
+  // Entries whose errors are not one: what all have in common, and what each has of its own.
+  void add_certificate_errors(const ComponentTraits& traits) {
+    const auto errors = standard_.certificate_errors(p_.wavelength);  // its reach has been checked
+    for (const CertificateError& error : *errors) {
+      const std::int64_t own = error.entry ? static_cast<std::int64_t>(*error.entry) + 1 : 0;
+      terms_.shared(
+          {ComponentSource::Certificate, own}, error.u, "1", p_.value * error.u,
+          [&] { return certificate_error_name(standard_.certificate(), error); }, traits);
+    }
+  }
+
   void add_standard() {
     const double f = p_.value;
     const Measured<double>& rho = p_.standard.rho;
     const ComponentTraits traits{.owner = rules_.standard_owner_};
-    terms_.shared(
-        {ComponentSource::Certificate}, rho.u / rho.value, "1", f * rho.u / rho.value, [] { return "certificate"; },
-        traits);
+    if (standard_.certificate().correlation == 1.0) {
+      terms_.shared(
+          {ComponentSource::Certificate}, rho.u / rho.value, "1", f * rho.u / rho.value, [] { return "certificate"; },
+          traits);
+    } else {
+      add_certificate_errors(traits);
+    }
     const Geometry& g = p_.reference.geometry;
+    const Wavelength wavelength = p_.wavelength;
     for (std::size_t k = 0; k < standard_.modes().size(); ++k) {
       const ShapeMode& mode = standard_.modes()[k];
       terms_.shared(
-          {ComponentSource::ShapeMode, static_cast<std::int64_t>(k)}, mode.u, "1", f * standard_.mode(k, g) * mode.u,
-          [&] { return "shape mode " + mode.name; }, traits);
+          {ComponentSource::ShapeMode, static_cast<std::int64_t>(k)}, mode.u, "1",
+          f * standard_.mode(k, g, wavelength) * mode.u, [&] { return "shape mode " + mode.name; }, traits);
     }
     terms_.shared(
         {ComponentSource::ShapeIntegral}, standard_.u_integral(), "1", f * standard_.u_integral(),
         [] { return "shape integral"; }, traits);
     terms_.shared(
         {ComponentSource::ShapeInterpolation}, 1.0, "of what curvature suggests",
-        f * standard_.u_interpolation(g) / p_.standard.shape, [] { return "shape between the nodes of its table"; },
-        traits);
+        f * standard_.u_interpolation(g, wavelength) / p_.standard.shape,
+        [] { return "shape between the nodes of its table"; }, traits);
   }
 
   void add_geometry() {

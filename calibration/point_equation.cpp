@@ -15,7 +15,8 @@ namespace gonio::calibration {
 namespace {
 
 // d ln f_ref / d angle of the shape table, over a quarter of a degree, within the table.
-double slope_of_shape(const ReferenceStandard& standard, const Geometry& at, double shape, std::size_t axis) {
+double slope_of_shape(const ReferenceStandard& standard, Wavelength wavelength, const Geometry& at, double shape,
+                      std::size_t axis) {
   constexpr Angle kStep = degrees(0.25);
   Geometry low = at;
   Geometry high = at;
@@ -23,16 +24,17 @@ double slope_of_shape(const ReferenceStandard& standard, const Geometry& at, dou
   angle(low) -= kStep;
   angle(high) += kStep;
   if (axis < 2) angle(high) = std::min(angle(high), axis == 0 ? standard.last_theta_i() : standard.last_theta_r());
-  const double change = standard.shape(high) - standard.shape(low);
+  const double change = standard.shape(high, wavelength) - standard.shape(low, wavelength);
   return change / ((angle(high) - angle(low)).si() * shape);
 }
 
-StandardView view_of(const ReferenceStandard& standard, const Measured<double>& rho, const Geometry& at,
+StandardView view_of(const ReferenceStandard& standard, Wavelength wavelength, const Geometry& at,
                      const LeftOut& left_out) {
-  StandardView view{.rho = rho};
+  StandardView view{.rho = standard.reflectance(wavelength).value()};
   if (left_out.shape) return view;
-  view.shape = standard.shape(at);
-  for (std::size_t a = 0; a < kDirectionAxes; ++a) view.slope[a] = slope_of_shape(standard, at, view.shape, a);
+  view.shape = standard.shape(at, wavelength);
+  for (std::size_t a = 0; a < kDirectionAxes; ++a)
+    view.slope[a] = slope_of_shape(standard, wavelength, at, view.shape, a);
   return view;
 }
 
@@ -144,8 +146,7 @@ Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& reading
   if (!(pair.reference.q > 0.0)) {
     return failure(no_light(point, pair.reference_id, pair.reference, context.instrument->detector.power.has_value()));
   }
-  pair.standard =
-      view_of(standard, standard.reflectance(point.wavelength).value(), pair.reference.geometry, context.left_out);
+  pair.standard = view_of(standard, point.wavelength, pair.reference.geometry, context.left_out);
   take_geometry(pair,
                 geometry_ratio(pair.sample.geometry, pair.reference.geometry, *context.instrument, context.left_out));
   pair.geometry_ratio *= nearness;

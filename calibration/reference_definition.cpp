@@ -79,6 +79,7 @@ Certificate read_certificate(TomlReader reader) {
   if (c.entries.size() > 1) {
     c.longest_gap = nanometres(reader.number("longest_gap_nm", {.least = 0.0, .most = 1e4, .unit = "nm"}));
   }
+  c.correlation = reader.number_or("correlation", 1.0, {.least = 0.0, .most = 1.0});
   return c;
 }
 
@@ -93,12 +94,21 @@ std::vector<Angle> read_grid(TomlReader& reader, std::string_view key, double mo
   return grid;
 }
 
-// About the normal phi has no meaning: a table that varies with it there has mixed up its axes.
-bool is_constant_at_the_pole(const std::vector<double>& values, std::size_t n_i, std::size_t n_r, std::size_t n_phi) {
+struct Grids {
+  std::vector<Angle> theta_i;
+  std::vector<Angle> theta_r;
+  std::vector<Angle> phi;
+  [[nodiscard]] std::size_t nodes() const { return theta_i.size() * theta_r.size() * phi.size(); }
+};
+
+// About the normal phi has no meaning: a table that varies with it there has mixed up its axes. `rows`: of all tables.
+bool is_constant_at_the_pole(const std::vector<double>& values, std::size_t rows, const Grids& grids) {
   constexpr double kRoundingOfAFile = 1e-5;
-  for (std::size_t i = 0; i < n_i; ++i) {
+  const std::size_t n_r = grids.theta_r.size();
+  const std::size_t n_phi = grids.phi.size();
+  for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t r = 0; r < n_r; ++r) {
-      if (i != 0 && r != 0) continue;
+      if (i % grids.theta_i.size() != 0 && r != 0) continue;
       const double first = values[(i * n_r + r) * n_phi];
       for (std::size_t p = 1; p < n_phi; ++p) {
         if (std::abs(values[(i * n_r + r) * n_phi + p] - first) > kRoundingOfAFile * first) return false;
@@ -108,27 +118,55 @@ bool is_constant_at_the_pole(const std::vector<double>& values, std::size_t n_i,
   return true;
 }
 
-ShapeTable read_table(TomlReader& reader) {
-  const auto theta_i = read_grid(reader, "theta_i_deg", 90.0);
-  const auto theta_r = read_grid(reader, "theta_r_deg", 90.0);
-  const auto phi = read_grid(reader, "phi_deg", 180.0);
+// None: one shape for all wavelengths.
+std::vector<Wavelength> read_wavelengths(TomlReader& reader) {
+  std::vector<Wavelength> wavelengths;
+  if (reader.kind("wavelengths_nm") == TomlKind::Absent) return wavelengths;
+  for (const double nm : reader.numbers("wavelengths_nm", {.least = 100.0, .most = 1e5, .unit = "nm"})) {
+    if (!wavelengths.empty() && nanometres(nm) <= wavelengths.back()) {
+      reader.fail("wavelengths_nm", ErrorCode::InvalidInput, "they do not ascend", "ascending wavelengths");
+    }
+    wavelengths.push_back(nanometres(nm));
+  }
+  return wavelengths;
+}
+
+void check_values(TomlReader& reader, const Grids& grids, std::size_t tables, const std::vector<double>& values) {
+  if (reader.has_failed()) return;
+  if (values.size() != tables * grids.nodes()) {
+    const std::string of_each =
+        fmt::format("{} x {} x {}", grids.theta_i.size(), grids.theta_r.size(), grids.phi.size());
+    reader.fail("values", ErrorCode::InvalidInput, fmt::format("{} values", values.size()),
+                tables == 1 ? fmt::format("{} = {}", of_each, grids.nodes())
+                            : fmt::format("{} wavelengths x {} = {}", tables, of_each, tables * grids.nodes()));
+    return;
+  }
+  if (is_constant_at_the_pole(values, tables * grids.theta_i.size(), grids)) return;
+  reader.fail("values", ErrorCode::InvalidInput, "they vary with phi at theta = 0",
+              "wavelength slowest, then theta_i, then theta_r, phi fastest; one value for all phi about the normal");
+}
+
+std::vector<SpectralShape> read_shapes(TomlReader& reader) {
+  const std::vector<Wavelength> wavelengths = read_wavelengths(reader);
+  const std::size_t tables = std::max<std::size_t>(1, wavelengths.size());
+  const Grids grids{.theta_i = read_grid(reader, "theta_i_deg", 90.0),
+                    .theta_r = read_grid(reader, "theta_r_deg", 90.0),
+                    .phi = read_grid(reader, "phi_deg", 180.0)};
   const auto values = reader.numbers("values", {.least = 1e-6, .most = 1e6});
-  if (!reader.has_failed() && phi.back() != degrees(180.0)) {
-    reader.fail("phi_deg", ErrorCode::InvalidInput, fmt::format("it ends at {} deg", in_degrees(phi.back())),
+  if (!reader.has_failed() && grids.phi.back() != degrees(180.0)) {
+    reader.fail("phi_deg", ErrorCode::InvalidInput, fmt::format("it ends at {} deg", in_degrees(grids.phi.back())),
                 "180 deg");
   }
-  const std::size_t expected = theta_i.size() * theta_r.size() * phi.size();
-  if (!reader.has_failed() && values.size() != expected) {
-    reader.fail("values", ErrorCode::InvalidInput, fmt::format("{} values", values.size()),
-                fmt::format("{} x {} x {} = {}", theta_i.size(), theta_r.size(), phi.size(), expected));
+  check_values(reader, grids, tables, values);
+  if (reader.has_failed()) return {};
+  std::vector<SpectralShape> shapes;
+  for (std::size_t t = 0; t < tables; ++t) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(t * grids.nodes());
+    shapes.push_back({wavelengths.empty() ? Wavelength{} : wavelengths[t],
+                      ShapeTable(grids.theta_i, grids.theta_r, grids.phi,
+                                 std::vector<double>(first, first + static_cast<std::ptrdiff_t>(grids.nodes())))});
   }
-  if (!reader.has_failed() && !is_constant_at_the_pole(values, theta_i.size(), theta_r.size(), phi.size())) {
-    reader.fail("values", ErrorCode::InvalidInput, "they vary with phi at theta = 0",
-                "theta_i slowest, then theta_r, phi fastest; one value for all phi about the normal");
-  }
-  // After an error any table does: the error is what comes back.
-  if (reader.has_failed()) return {{{}, degrees(90.0)}, {{}, degrees(90.0)}, {{}, degrees(180.0)}, std::vector(8, 1.0)};
-  return {theta_i, theta_r, phi, values};
+  return shapes;
 }
 
 void check_own_geometry(TomlReader& reader, const ShapeTable& table, CertificateGeometry geometry) {
@@ -181,12 +219,13 @@ Result<ReferenceDefinition> parse_reference(std::string_view toml, const std::st
   ReferenceDefinition definition{.serial = serial,
                                  .material = material,
                                  .certificate = certificate,
-                                 .shape = read_table(shape),
+                                 .shapes = read_shapes(shape),
                                  .modes = read_modes(shape),
                                  .expires_at = certificate_table.location("expires"),
                                  .entries_at = certificate_table.location("entries"),
-                                 .shape_at = shape.location("values")};
-  if (!root->has_failed()) check_own_geometry(shape, definition.shape, certificate.geometry);
+                                 .shape_at = shape.location("values"),
+                                 .shape_wavelengths_at = shape.location("wavelengths_nm")};
+  if (!root->has_failed()) check_own_geometry(shape, definition.shapes.front().table, certificate.geometry);
   if (certificate.geometry != CertificateGeometry::ZeroFortyFive) {
     demand(shape, "u_integral", "the relative u (k = 1) of the hemisphere's integral: the cap beyond the table");
     definition.u_integral = shape.number("u_integral", {.least = 0.0, .most = 0.5});

@@ -29,7 +29,15 @@ struct Certificate {
       specular_port;             ///< 8/h, h/8: half angle about the mirror direction that was left out; none: included
   double coverage_factor = 0.0;  ///< as stated, of the stated uncertainties
   Wavelength longest_gap{};      ///< interpolation goes between entries at most so far apart
+  /// Of the errors of any two entries, 0 to 1: 1 is one error for all wavelengths.
+  double correlation = 1.0;
   std::vector<CertificateEntry> entries;  ///< ascending, at least one
+};
+
+/// The angular shape at one wavelength.
+struct SpectralShape {
+  Wavelength wavelength;  ///< counts for nothing where there is no other
+  ShapeTable table;
 };
 
 /// What a file reference/*.toml says, checked for form. The shape's scale is still the file's own.
@@ -37,12 +45,13 @@ struct ReferenceDefinition {
   std::string serial;
   std::string material;
   Certificate certificate;
-  ShapeTable shape;
+  std::vector<SpectralShape> shapes;  ///< at least one, of one grid; ascending wavelengths
   std::vector<ShapeMode> modes;
   double u_integral = 0.0;   ///< relative, k = 1
   InputLocation expires_at;  ///< where the file says what later refusals refer to
   InputLocation entries_at;
   InputLocation shape_at;
+  InputLocation shape_wavelengths_at;
 };
 
 /// Reads the text of a reference/*.toml (the format: README.md). `file` is the user's name for it.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace gonio::calibration {
@@ -24,15 +25,23 @@ Error out_of_reach(const ReferenceDefinition& d, std::string seen, std::string l
 
 }  // namespace
 
+std::string certificate_error_name(const Certificate& certificate, const CertificateError& error) {
+  if (!error.entry) return "certificate";
+  return fmt::format("certificate at {:g} nm alone", in_nanometres(certificate.entries[*error.entry].wavelength));
+}
+
 ReferenceStandard::ReferenceStandard(ReferenceDefinition definition) : definition_(std::move(definition)) {
   const Certificate& c = definition_.certificate;
-  const auto mean = [&](const std::function<double(const Geometry&)>& s) {
-    return certificate_mean(s, definition_.shape, c.geometry, c.specular_port);
-  };
-  const double norm = mean([&](const Geometry& g) { return definition_.shape.value(g); });
-  scale_ = 1.0 / norm;
-  for (const ShapeMode& mode : definition_.modes) {
-    mode_means_.push_back(mean([&](const Geometry& g) { return definition_.shape.value(g) * mode.value(g); }) / norm);
+  for (const SpectralShape& shape : definition_.shapes) {
+    const auto mean = [&](const std::function<double(const Geometry&)>& s) {
+      return certificate_mean(s, shape.table, c.geometry, c.specular_port);
+    };
+    const double norm = mean([&](const Geometry& g) { return shape.table.value(g); });
+    scales_.push_back(1.0 / norm);
+    std::vector<double>& means = mode_means_.emplace_back();
+    for (const ShapeMode& mode : definition_.modes) {
+      means.push_back(mean([&](const Geometry& g) { return shape.table.value(g) * mode.value(g); }) / norm);
+    }
   }
 }
 
@@ -60,19 +69,42 @@ Result<void> ReferenceStandard::check_reach(Wavelength wavelength, const Geometr
                         fmt::format("the shape table ends at {:.3f} deg", in_degrees(grid.back())),
                         definition_.shape_at);
   };
-  const ShapeTable& table = definition_.shape;
+  GONIO_TRY(check_shape_wavelength(wavelength));
+  const ShapeTable& table = grid();
   if (g.theta_i > table.theta_i().back() + kEdge) return failure(beyond(g.theta_i, table.theta_i(), "theta_i"));
   if (g.theta_r > table.theta_r().back() + kEdge) return failure(beyond(g.theta_r, table.theta_r(), "theta_r"));
   return {};
 }
 
-Result<Measured<double>> ReferenceStandard::reflectance(Wavelength wavelength) const {
+Result<void> ReferenceStandard::check_shape_wavelength(Wavelength wavelength) const {
+  const auto& shapes = definition_.shapes;
+  const bool is_within = wavelength >= shapes.front().wavelength - kSameWavelength &&
+                         wavelength <= shapes.back().wavelength + kSameWavelength;
+  if (shapes.size() == 1 || is_within) return {};
+  return failure(
+      out_of_reach(definition_, fmt::format("wavelength {:.3f} nm", in_nanometres(wavelength)),
+                   fmt::format("the shape tables cover {:.3f} to {:.3f} nm", in_nanometres(shapes.front().wavelength),
+                               in_nanometres(shapes.back().wavelength)),
+                   definition_.shape_wavelengths_at));
+}
+
+ReferenceStandard::Place ReferenceStandard::place_of(Wavelength wavelength) const {
+  const auto& shapes = definition_.shapes;
+  const auto above =
+      std::ranges::find_if(shapes, [&](const SpectralShape& shape) { return shape.wavelength > wavelength; });
+  if (above == shapes.begin()) return {};
+  const auto below = static_cast<std::size_t>(above - shapes.begin()) - 1;
+  if (above == shapes.end()) return {below, 0.0};
+  const Wavelength from = shapes[below].wavelength;
+  return {below, (wavelength - from) / (above->wavelength - from)};
+}
+
+Result<ReferenceStandard::Place> ReferenceStandard::entry_place(Wavelength wavelength) const {
   const Certificate& c = definition_.certificate;
   const auto above = std::ranges::find_if(
       c.entries, [&](const CertificateEntry& e) { return e.wavelength >= wavelength - kSameWavelength; });
-  if (above != c.entries.end() && above->wavelength <= wavelength + kSameWavelength) {
-    return Measured<double>{.value = above->reflectance, .u = above->u};
-  }
+  const auto index = static_cast<std::size_t>(above - c.entries.begin());
+  if (above != c.entries.end() && above->wavelength <= wavelength + kSameWavelength) return Place{index, 0.0};
   const std::string seen = fmt::format("wavelength {:.3f} nm", in_nanometres(wavelength));
   if (above == c.entries.begin() || above == c.entries.end()) {
     return failure(out_of_reach(
@@ -90,9 +122,41 @@ Result<Measured<double>> ReferenceStandard::reflectance(Wavelength wavelength) c
                     in_nanometres(below.wavelength), in_nanometres(above->wavelength), in_nanometres(c.longest_gap)),
         definition_.entries_at));
   }
-  const double fraction = (wavelength - below.wavelength) / gap;
-  return Measured<double>{.value = below.reflectance + fraction * (above->reflectance - below.reflectance),
-                          .u = below.u + fraction * (above->u - below.u)};
+  return Place{index - 1, (wavelength - below.wavelength) / gap};
+}
+
+Result<Measured<double>> ReferenceStandard::reflectance(Wavelength wavelength) const {
+  const Result<Place> place = entry_place(wavelength);
+  if (!place) return failure(place.error());
+  const auto& entries = definition_.certificate.entries;
+  const CertificateEntry& below = entries[place->below];
+  if (place->fraction == 0.0) return Measured<double>{.value = below.reflectance, .u = below.u};
+  const CertificateEntry& above = entries[place->below + 1];
+  const double r = definition_.certificate.correlation;
+  const double u_below = (1.0 - place->fraction) * below.u;
+  const double u_above = place->fraction * above.u;
+  // (a + b)^2 less what is not common; for r = 1 the sum to its last bit.
+  const double u =
+      r == 1.0 ? u_below + u_above : std::sqrt(u_below * u_below + u_above * u_above + 2.0 * r * u_below * u_above);
+  return Measured<double>{.value = below.reflectance + place->fraction * (above.reflectance - below.reflectance),
+                          .u = u};
+}
+
+Result<std::vector<CertificateError>> ReferenceStandard::certificate_errors(Wavelength wavelength) const {
+  const Result<Place> place = entry_place(wavelength);
+  if (!place) return failure(place.error());
+  const Certificate& c = definition_.certificate;
+  const double rho = reflectance(wavelength)->value;
+  const double u_below = (1.0 - place->fraction) * c.entries[place->below].u / rho;
+  const double u_above = place->fraction > 0.0 ? place->fraction * c.entries[place->below + 1].u / rho : 0.0;
+  std::vector<CertificateError> errors;
+  const auto add = [&](std::optional<std::size_t> entry, double u) {
+    if (u > 0.0) errors.push_back({entry, u});
+  };
+  add(std::nullopt, std::sqrt(c.correlation) * (u_below + u_above));
+  add(place->below, std::sqrt(1.0 - c.correlation) * u_below);
+  add(place->below + 1, std::sqrt(1.0 - c.correlation) * u_above);
+  return errors;
 }
 
 }  // namespace gonio::calibration

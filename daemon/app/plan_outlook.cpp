@@ -27,9 +27,10 @@ double relative_u(const ScanPoint& point, const api::Plan& plan, const Instrumen
   const Geometry& g = point.geometry;
   const auto rho = standard.reflectance(point.wavelength);
   double variance = rho ? square(rho->u / rho->value) : 0.0;  // its reach has been checked
-  variance += square(standard.u_integral()) + square(standard.u_interpolation(g) / standard.shape(g));
+  variance += square(standard.u_integral()) +
+              square(standard.u_interpolation(g, point.wavelength) / standard.shape(g, point.wavelength));
   for (std::size_t k = 0; k < standard.modes().size(); ++k) {
-    variance += square(standard.mode(k, g) * standard.modes()[k].u);
+    variance += square(standard.mode(k, g, point.wavelength) * standard.modes()[k].u);
   }
   const calibration::InstrumentModel& model = instrument.model;
   variance +=

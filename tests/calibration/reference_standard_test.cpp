@@ -40,8 +40,8 @@ Geometry at(Angle theta_i, Angle theta_r, Angle phi_r) {
 TEST(ReferenceStandard, GivesAFlatTableTheShapeOneWhateverItsScale) {
   const ReferenceStandard white = standard({.shape = [](double, double, double) { return 3.7; }});
 
-  EXPECT_NEAR(white.shape(at(8.0_deg, 20.0_deg, 33.0_deg)), 1.0, 1e-14);
-  EXPECT_NEAR(white.shape(at(60.0_deg, 60.0_deg, 180.0_deg)), 1.0, 1e-14);
+  EXPECT_NEAR(white.shape(at(8.0_deg, 20.0_deg, 33.0_deg), 568.0_nm), 1.0, 1e-14);
+  EXPECT_NEAR(white.shape(at(60.0_deg, 60.0_deg, 180.0_deg), 568.0_nm), 1.0, 1e-14);
 }
 
 // s = 1 + a theta_r integrates to 2 int (1 + a t) sin t cos t dt = 1 + a (T/2 + sin(2T)/4), held constant beyond T.
@@ -55,7 +55,7 @@ TEST(ReferenceStandard, NormalisesByTheHemisphereAtEightDegreesAsTheClosedFormSa
     const ReferenceStandard white = standard(text);
 
     const double mean = 1.0 + a * (last / 2.0 + std::sin(2.0 * last) / 4.0);
-    EXPECT_NEAR(white.shape(at(40.0_deg, 45.0_deg, 70.0_deg)), (1.0 + a * kPi / 4.0) / mean, kSixDigits);
+    EXPECT_NEAR(white.shape(at(40.0_deg, 45.0_deg, 70.0_deg), 568.0_nm), (1.0 + a * kPi / 4.0) / mean, kSixDigits);
   }
 }
 
@@ -65,8 +65,9 @@ TEST(ReferenceStandard, ScalesTheWholeTableByOneFactorAndNotEachIncidence) {
   const ReferenceStandard white = standard(text);
 
   // At theta_i = 8 deg the table says 1 + 8/90 whatever the view: that is the certificate's geometry.
-  EXPECT_NEAR(white.shape(at(8.0_deg, 10.0_deg, 0.0_deg)), 1.0, kSixDigits);
-  EXPECT_NEAR(white.shape(at(60.0_deg, 10.0_deg, 0.0_deg)), (1.0 + 60.0 / 90.0) / (1.0 + 8.0 / 90.0), kSixDigits);
+  EXPECT_NEAR(white.shape(at(8.0_deg, 10.0_deg, 0.0_deg), 568.0_nm), 1.0, kSixDigits);
+  EXPECT_NEAR(white.shape(at(60.0_deg, 10.0_deg, 0.0_deg), 568.0_nm), (1.0 + 60.0 / 90.0) / (1.0 + 8.0 / 90.0),
+              kSixDigits);
 }
 
 TEST(ReferenceStandard, ExchangesTheDirectionsForACertificateWithHemisphericalLight) {
@@ -77,7 +78,7 @@ TEST(ReferenceStandard, ExchangesTheDirectionsForACertificateWithHemisphericalLi
 
   const ReferenceStandard white = standard(text);
 
-  EXPECT_NEAR(white.shape(at(45.0_deg, 8.0_deg, 0.0_deg)), 1.0, kSixDigits);
+  EXPECT_NEAR(white.shape(at(45.0_deg, 8.0_deg, 0.0_deg), 568.0_nm), 1.0, kSixDigits);
 }
 
 TEST(ReferenceStandard, SetsTheShapeToOneAtZeroFortyFiveForACertificateOfThatGeometry) {
@@ -87,8 +88,8 @@ TEST(ReferenceStandard, SetsTheShapeToOneAtZeroFortyFiveForACertificateOfThatGeo
 
   const ReferenceStandard white = standard(text);
 
-  EXPECT_NEAR(white.shape(at(0.0_deg, 45.0_deg, 120.0_deg)), 1.0, kSixDigits);
-  EXPECT_NEAR(white.shape(at(45.0_deg, 45.0_deg, 0.0_deg)), 2.0 / 1.5, kSixDigits);
+  EXPECT_NEAR(white.shape(at(0.0_deg, 45.0_deg, 120.0_deg), 568.0_nm), 1.0, kSixDigits);
+  EXPECT_NEAR(white.shape(at(45.0_deg, 45.0_deg, 0.0_deg), 568.0_nm), 2.0 / 1.5, kSixDigits);
 }
 
 // A cone of half angle b about a direction at 8 deg holds cos(8 deg) sin^2(b) of a hemisphere's projected solid angle.
@@ -100,31 +101,31 @@ TEST(ReferenceStandard, LeavesTheSpecularPortOutOfTheIntegral) {
   const ReferenceStandard white = standard(text);
 
   const double port = std::cos(8.0 * kPi / 180.0) * std::pow(std::sin(4.0 * kPi / 180.0), 2);
-  EXPECT_NEAR(white.shape(at(30.0_deg, 30.0_deg, 0.0_deg)), 1.0 / (1.0 - port), 1e-9);
+  EXPECT_NEAR(white.shape(at(30.0_deg, 30.0_deg, 0.0_deg), 568.0_nm), 1.0 / (1.0 - port), 1e-9);
 }
 
 TEST(ReferenceStandard, InterpolatesLinearlyInEachAngleAndFoldsPhi) {
   ReferenceText text{.shape = [](double i, double r, double p) { return 1.0 + i * r * p / 1e6; }};
   const ReferenceStandard white = standard(text);
-  const double scale = white.shape(at(0.0_deg, 0.0_deg, 0.0_deg));
+  const double scale = white.shape(at(0.0_deg, 0.0_deg, 0.0_deg), 568.0_nm);
 
   // A product of the three angles is what a trilinear rule reproduces exactly.
   const double expected = scale * (1.0 + 20.0 * 50.0 * 75.0 / 1e6);
 
-  EXPECT_NEAR(white.shape(at(20.0_deg, 50.0_deg, 75.0_deg)), expected, kSixDigits);
-  EXPECT_NEAR(white.shape(at(20.0_deg, 50.0_deg, -75.0_deg)), expected, kSixDigits);
-  EXPECT_NEAR(white.shape(at(20.0_deg, 50.0_deg, 285.0_deg)), expected, kSixDigits);
-  EXPECT_NEAR(white.shape(at(-20.0_deg, 50.0_deg, 105.0_deg)), expected, kSixDigits);
+  EXPECT_NEAR(white.shape(at(20.0_deg, 50.0_deg, 75.0_deg), 568.0_nm), expected, kSixDigits);
+  EXPECT_NEAR(white.shape(at(20.0_deg, 50.0_deg, -75.0_deg), 568.0_nm), expected, kSixDigits);
+  EXPECT_NEAR(white.shape(at(20.0_deg, 50.0_deg, 285.0_deg), 568.0_nm), expected, kSixDigits);
+  EXPECT_NEAR(white.shape(at(-20.0_deg, 50.0_deg, 105.0_deg), 568.0_nm), expected, kSixDigits);
 }
 
 // A parabola through nodes h apart lies c t (1 - t) h^2 off its chord; the table is linear along the other two angles.
 TEST(ReferenceStandard, SaysHowFarAStraightLineMayBeFromACurvedShape) {
   const double c = 1e-4;  // per square degree
   const ReferenceStandard white = standard({.shape = [&](double, double r, double) { return 1.0 + c * r * r; }});
-  const double scale = white.shape(at(0.0_deg, 0.0_deg, 0.0_deg));
+  const double scale = white.shape(at(0.0_deg, 0.0_deg, 0.0_deg), 568.0_nm);
 
-  EXPECT_NEAR(white.u_interpolation(at(20.0_deg, 35.0_deg, 70.0_deg)), scale * c * 5.0 * 10.0, 1e-5);
-  EXPECT_NEAR(white.u_interpolation(at(20.0_deg, 45.0_deg, 70.0_deg)), 0.0, 1e-12);
+  EXPECT_NEAR(white.u_interpolation(at(20.0_deg, 35.0_deg, 70.0_deg), 568.0_nm), scale * c * 5.0 * 10.0, 1e-5);
+  EXPECT_NEAR(white.u_interpolation(at(20.0_deg, 45.0_deg, 70.0_deg), 568.0_nm), 0.0, 1e-12);
 }
 
 // The midpoint rule over a fine grid, written out here, sees no change of the certificate's reflectance.
@@ -146,8 +147,8 @@ TEST(ReferenceStandard, ModesKeepTheReflectanceThatTheCertificateStates) {
       const double theta = (t + 0.5) * kPi / 2.0 / kThetas;
       const Geometry g = at(8.0_deg, radians(theta), radians((p + 0.5) * kPi / kPhis));
       const double weight = std::sin(theta) * std::cos(theta) * (kPi / 2.0 / kThetas) * 2.0 / kPhis;
-      whole += weight * white.shape(g);
-      for (std::size_t k = 0; k < 4; ++k) change[k] += weight * white.shape(g) * white.mode(k, g);
+      whole += weight * white.shape(g, 568.0_nm);
+      for (std::size_t k = 0; k < 4; ++k) change[k] += weight * white.shape(g, 568.0_nm) * white.mode(k, g, 568.0_nm);
     }
   }
 
@@ -190,6 +191,67 @@ TEST(ReferenceStandard, InterpolatesBetweenEntriesButNeverAcrossALongGapNorBeyon
     EXPECT_EQ(refused.error().where->field, "certificate.entries");
     EXPECT_GT(refused.error().where->line, 0);
   }
+}
+
+// 8/h fixes the integral of each table by itself: with s = 1 + a(lambda) theta_r both mean 1, and half way between them
+// so does their mean.
+TEST(ReferenceStandard, ScalesEachWavelengthsShapeByItselfAndInterpolatesBetweenThem) {
+  const double mean_theta = 45.0;  // deg, of theta_r weighted with 2 sin cos
+  ReferenceText text{.wavelengths_nm = {500.0, 600.0}, .spectral_shape = [](double nm, double, double r, double) {
+                       return nm < 550.0 ? 2.0 : 3.0 * (1.0 + 0.01 * r);
+                     }};
+  const ReferenceStandard white = standard(text);
+  const Geometry g = at(0.0_deg, 60.0_deg, 0.0_deg);
+  const double at_600 = (1.0 + 0.01 * 60.0) / (1.0 + 0.01 * mean_theta);
+
+  EXPECT_NEAR(white.shape(g, 500.0_nm), 1.0, kSixDigits);
+  EXPECT_NEAR(white.shape(g, 600.0_nm), at_600, kSixDigits);
+  EXPECT_NEAR(white.shape(g, 525.0_nm), 0.75 + 0.25 * at_600, kSixDigits);
+}
+
+TEST(ReferenceStandard, IsRefusedBeyondTheWavelengthsOfItsShapes) {
+  ReferenceText text{.wavelengths_nm = {570.0, 600.0},
+                     .spectral_shape = [](double, double, double, double) { return 1.0; }};
+
+  const auto refused = standard(text).check_reach(568.0_nm, at(0.0_deg, 45.0_deg, 0.0_deg));
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::ReferenceOutOfReach);
+  EXPECT_EQ(refused.error().where->field, "shape.wavelengths_nm");
+}
+
+TEST(ReferenceStandard, ATableTooFewForItsWavelengthsSaysHowManyValuesItNeeds) {
+  ReferenceText text;
+  text.shape_extra += "wavelengths_nm = [500, 600]\n";
+
+  const Error error = refusal(text);
+
+  EXPECT_EQ(error.where.value_or(InputLocation{}).field, "shape.values");
+  EXPECT_NE(error.limit.find("2 wavelengths x 7 x 7 x 4 = 392"), std::string::npos) << error.limit;
+}
+
+// Errors of two entries with correlation r: the variance of their mean is (u1^2 + u2^2 + 2 r u1 u2) / 4.
+TEST(ReferenceStandard, TakesTheCorrelationOfTheEntriesErrorsFromTheFile) {
+  ReferenceText text;
+  text.certificate += "longest_gap_nm = 100.0\ncorrelation = 0.25\n";
+  text.entries =
+      "[[certificate.entries]]\nwavelength_nm = 500.0\nreflectance = 0.98\nuncertainty = 0.004\n"
+      "[[certificate.entries]]\nwavelength_nm = 600.0\nreflectance = 0.98\nuncertainty = 0.006\n";
+  const ReferenceStandard white = standard(text);
+
+  const auto between = white.reflectance(550.0_nm);
+  const auto errors = white.certificate_errors(550.0_nm);
+  const auto at_entry = white.certificate_errors(600.0_nm);
+
+  ASSERT_TRUE(between && errors && at_entry);
+  EXPECT_NEAR(between->u, std::sqrt(4e-6 + 9e-6 + 0.5 * 6e-6) / 2.0, 1e-15);
+  ASSERT_EQ(errors->size(), 3U);
+  EXPECT_FALSE((*errors)[0].entry);
+  EXPECT_NEAR((*errors)[0].u, 0.5 * 0.0025 / 0.98, 1e-15);
+  EXPECT_NEAR((*errors)[1].u, std::sqrt(0.75) * 0.001 / 0.98, 1e-15);
+  EXPECT_NEAR((*errors)[2].u, std::sqrt(0.75) * 0.0015 / 0.98, 1e-15);
+  EXPECT_EQ((*errors)[1].entry, std::optional<std::size_t>(0));
+  EXPECT_EQ(at_entry->size(), 2U);
 }
 
 TEST(ReferenceStandard, IsRefusedAfterItsLastDayAndBeforeItsFirst) {

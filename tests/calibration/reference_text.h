@@ -18,15 +18,23 @@ struct ReferenceText {
   std::function<double(double theta_i_deg, double theta_r_deg, double phi_deg)> shape = [](double, double, double) {
     return 1.0;
   };
+  std::vector<double> wavelengths_nm;  ///< with them `spectral_shape` counts, and `shape` does not
+  std::function<double(double nm, double theta_i_deg, double theta_r_deg, double phi_deg)> spectral_shape;
   std::string shape_extra = "u_integral = 0.001\n";
   std::string modes;
 
   [[nodiscard]] std::string text() const {
     std::string values;
-    for (const double i : theta_deg) {
-      for (const double r : theta_deg) {
-        for (const double p : phi_deg) values += std::to_string(shape(i, r, p)) + ", ";
+    const auto add = [&](const auto& one_shape) {
+      for (const double i : theta_deg) {
+        for (const double r : theta_deg) {
+          for (const double p : phi_deg) values += std::to_string(one_shape(i, r, p)) + ", ";
+        }
       }
+    };
+    if (wavelengths_nm.empty()) add(shape);
+    for (const double nm : wavelengths_nm) {
+      add([&](double i, double r, double p) { return spectral_shape(nm, i, r, p); });
     }
     const auto list = [](const std::vector<double>& numbers) {
       std::string joined = "[";
@@ -35,7 +43,8 @@ struct ReferenceText {
     };
     return "[standard]\n" + standard + "[certificate]\n" + certificate + entries +
            "[shape]\ntheta_i_deg = " + list(theta_deg) + "theta_r_deg = " + list(theta_deg) +
-           "phi_deg = " + list(phi_deg) + "values = [" + values + "]\n" + shape_extra + modes;
+           "phi_deg = " + list(phi_deg) + (wavelengths_nm.empty() ? "" : "wavelengths_nm = " + list(wavelengths_nm)) +
+           "values = [" + values + "]\n" + shape_extra + modes;
   }
 };
 

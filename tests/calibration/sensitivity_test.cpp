@@ -74,7 +74,7 @@ ScanReadings readings(const Wrong& wrong) {
         g.theta_r += wrong.zeros.theta_r;
         g.phi_r += wrong.zeros.phi_r;
         builder.add_item(Target::Sample, point, at_s += 1.0, 0.02, net(sample_brdf(g), g, 0.02));
-        const double f_ref = 0.99 / kPi * white.shape(g);
+        const double f_ref = 0.99 / kPi * white.shape(g, nanometres(568.0));
         builder.add_item(Target::Reference, point, at_s += 1.0, 0.01, net(f_ref, g, 0.01));
       }
     }

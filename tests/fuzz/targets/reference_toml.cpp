@@ -20,11 +20,11 @@ void hold_at(const calibration::ReferenceStandard& standard, Wavelength waveleng
   hold(reflectance.has_value(), "a wavelength within reach has a reflectance");
   hold(std::isfinite(reflectance->value) && reflectance->value > 0.0, "a reflectance is positive");
   hold(std::isfinite(reflectance->u) && reflectance->u >= 0.0, "an uncertainty is not negative");
-  const double shape = standard.shape(g);
+  const double shape = standard.shape(g, wavelength);
   hold(std::isfinite(shape) && shape > 0.0, "a shape is positive");
-  hold(std::isfinite(standard.u_interpolation(g)), "the error between nodes is finite");
+  hold(std::isfinite(standard.u_interpolation(g, wavelength)), "the error between nodes is finite");
   for (std::size_t k = 0; k < standard.modes().size(); ++k)
-    hold(std::isfinite(standard.mode(k, g)), "a mode is finite");
+    hold(std::isfinite(standard.mode(k, g, wavelength)), "a mode is finite");
 }
 
 }  // namespace
