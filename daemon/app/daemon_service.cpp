@@ -10,9 +10,11 @@
 #include "daemon/app/hand_reading_report.h"
 #include "daemon/app/instrument_report.h"
 #include "daemon/app/job_desk.h"
+#include "daemon/app/log.h"
 #include "daemon/app/plan_desk.h"
 #include "daemon/app/plan_outlook.h"
 #include "daemon/app/rest_order.h"
+#include "daemon/app/reference_desk.h"
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
 #include "daemon/app/version_desk.h"
@@ -476,18 +478,7 @@ Result<std::string> DaemonService::export_csv(std::int64_t scan) {
 
 Result<api::ReferenceList> DaemonService::references() {
   api::ReferenceList list;
-  for (const ShelfEntry& entry : parts_.shelf.all()) {
-    api::ReferenceReport report{.file = entry.file};
-    if (entry.standard) {
-      report.serial = entry.standard->serial();
-      report.material = entry.standard->material();
-      report.certificate_date = entry.standard->certificate().date;
-      report.expires = entry.standard->certificate().expires;
-    } else {
-      report.error = entry.standard.error();
-    }
-    list.references.push_back(std::move(report));
-  }
+  for (const ShelfEntry& entry : parts_.shelf.all()) list.references.push_back(reference_report(entry));
   return list;
 }
 
@@ -509,6 +500,21 @@ Result<api::CalibrationReport> DaemonService::calibration(std::int64_t version) 
 
 Result<api::ChartReport> DaemonService::calibration_chart(const std::string& standard) {
   return ask_store([&](StoreReader& store) { return chart_of(store, standard); });
+}
+
+Result<api::ReferenceReport> DaemonService::reference(const std::string& serial) {
+  return reference_in_full(parts_.shelf, serial);
+}
+
+Result<api::ReferenceReport> DaemonService::check_reference(const api::ReferenceImport& request) {
+  return check_import(request, parts_.shelf);
+}
+
+Result<api::ReferenceReport> DaemonService::import_reference(const api::ReferenceImport& request,
+                                                             const std::string& who) {
+  Result<api::ReferenceReport> report = import_to_shelf(request, parts_.shelf, parts_.clock.utc_now());
+  if (report) log_info(fmt::format("reference: {} imported by {}: {}", report->serial, who, report->note));
+  return report;
 }
 
 api::InstrumentReport DaemonService::instrument() {

@@ -66,6 +66,9 @@ class DaemonService final : public Service {
   Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) override;
   Result<std::string> export_csv(std::int64_t scan) override;
   Result<api::ReferenceList> references() override;
+  Result<api::ReferenceReport> reference(const std::string& serial) override;
+  Result<api::ReferenceReport> check_reference(const api::ReferenceImport& request) override;
+  Result<api::ReferenceReport> import_reference(const api::ReferenceImport& request, const std::string& who) override;
   api::InstrumentReport instrument() override;
   Result<api::AnalysisReport> start_analysis(const api::AnalysisRequest& request, const std::string& who) override;
   api::AnalysisList analyses() override { return parts_.analyses.all(); }

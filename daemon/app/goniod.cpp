@@ -93,6 +93,9 @@ void log_references(const ReferenceShelf& shelf) {
       log_info(fmt::format("reference: {} ({}), certificate of {}, expires {}", entry.standard->serial(),
                            entry.standard->material(), entry.standard->certificate().date,
                            entry.standard->certificate().expires));
+      for (const std::string& finding : entry.shape.findings) {
+        log_warning(fmt::format("reference: the table of {}: {}", entry.standard->serial(), finding));
+      }
     } else {
       log_warning("reference: " + describe(entry.standard.error()));
     }

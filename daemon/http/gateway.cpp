@@ -41,7 +41,9 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
 bool is_slow(RouteId id) {
   return id == RouteId::PlanCheck || id == RouteId::ScanSubmit || id == RouteId::ScanBrdf ||
          id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing ||
-         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::AnalysisFile;
+         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::AnalysisFile ||
+         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart ||
+         id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
@@ -180,6 +182,11 @@ void Gateway::run_command(const HttpRequest& request, const RouteMatch& match,
       if (!words) return refused(words.error());
       return exchange->answer(json_response(service_.cancel_analysis(match.scan)));
     }
+    case RouteId::ReferenceImport: {
+      const auto reference = api::request_from_json<api::ReferenceImport>(request.body);
+      if (!reference) return refused(reference.error());
+      return exchange->answer(json_response(service_.import_reference(*reference, request.who)));
+    }
     default: {
       const Result<Words> words = scan_words(match.route->id, request.body);
       if (!words) return refused(words.error());
@@ -241,6 +248,14 @@ HttpResponse Gateway::read(const HttpRequest& request, const RouteMatch& match) 
       const auto name = request.query.find("name");
       Result<std::string> bytes = service_.analysis_file(match.scan, name == request.query.end() ? "" : name->second);
       return bytes ? success(api::kBytes, std::move(bytes).value()) : problem(bytes.error());
+    }
+    case RouteId::ReferenceCheck: {
+      const auto reference = api::request_from_json<api::ReferenceImport>(request.body);
+      return reference ? json_response(service_.check_reference(*reference)) : problem(reference.error());
+    }
+    case RouteId::ReferenceOne: {
+      const auto serial = request.query.find("serial");
+      return json_response(service_.reference(serial == request.query.end() ? std::string() : serial->second));
     }
     case RouteId::Instrument:
       return success(api::kJson, api::to_json(service_.instrument()));

@@ -76,6 +76,14 @@ class Service {
   [[nodiscard]] virtual Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) = 0;
   [[nodiscard]] virtual Result<std::string> export_csv(std::int64_t scan) = 0;
   [[nodiscard]] virtual Result<api::ReferenceList> references() = 0;
+  /// Errors: NotFound, and what is wrong with its file.
+  [[nodiscard]] virtual Result<api::ReferenceReport> reference(const std::string& serial) = 0;
+  /// Looks at what an import would bring. Errors: those of the texts.
+  [[nodiscard]] virtual Result<api::ReferenceReport> check_reference(const api::ReferenceImport& request) = 0;
+  /// Writes it to the shelf. Errors: those of the texts; WrongState (there is another text of this serial number);
+  /// InvalidInput (its table contradicts itself), DiskFull.
+  [[nodiscard]] virtual Result<api::ReferenceReport> import_reference(const api::ReferenceImport& request,
+                                                                      const std::string& who) = 0;
   [[nodiscard]] virtual api::InstrumentReport instrument() = 0;
   [[nodiscard]] virtual Result<api::CalibrationList> calibrations() = 0;
   /// Errors: NotFound.

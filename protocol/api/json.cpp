@@ -98,8 +98,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfReport, point, theta_i_deg, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointPage, points, next_after)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfPage, values, next_after)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanList, scans)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CertificateEntryReport, wavelength_nm, reflectance, u)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ShapeModeReport, name, kind, u, width_deg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceReport, serial, material, file, certificate_date, expires,
-                                                error)
+                                                error, geometry, from_nm, to_nm, last_theta_i_deg, last_theta_r_deg,
+                                                table, largest_gap, findings, note, coverage_factor, correlation,
+                                                u_integral, entries, modes, text)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceList, references)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(FoundValueReport, name, unit, value, u)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CalibrationUseReport, utc, who, in_use, reason)
@@ -133,6 +137,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AbortRequest, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ResumeRequest, hold)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ChangeRequest, target_snr, max_time_s, order, seed, priority, start_utc,
                                                 reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceImport, text, file, shape, shape_file, shape_of, replace)
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisRequest, kind, scan, format, point, other_scan, model,
                                                 deadline_s)
@@ -282,6 +287,7 @@ GONIO_REQUEST(ResumeRequest);
 GONIO_REQUEST(ChangeRequest);
 GONIO_REQUEST(UseCalibrationRequest);
 GONIO_REQUEST(RecomputeRequest);
+GONIO_REQUEST(ReferenceImport);
 GONIO_REQUEST(NoWords);
 
 }  // namespace api

@@ -243,6 +243,20 @@ struct ScanList {
   std::vector<ScanReport> scans;  ///< newest first
 };
 
+struct CertificateEntryReport {
+  double wavelength_nm = 0.0;
+  double reflectance = 0.0;
+  double u = 0.0;  ///< absolute, k = 1
+};
+
+/// How wrong the shape may be, in one of its ways.
+struct ShapeModeReport {
+  std::string name;
+  std::string kind;  ///< "limb", "forward", "sideways", "opposition"
+  double u = 0.0;    ///< relative, k = 1
+  std::optional<double> width_deg;
+};
+
 struct ReferenceReport {
   std::string serial;
   std::string material;
@@ -250,6 +264,22 @@ struct ReferenceReport {
   std::string certificate_date;
   std::string expires;
   std::optional<Error> error;  ///< why it cannot be used
+  std::string geometry;        ///< of the certificate: "8/h", "h/8", "0/45"
+  double from_nm = 0.0;        ///< where both certificate and shape hold
+  double to_nm = 0.0;
+  double last_theta_i_deg = 0.0;  ///< of the shape table
+  double last_theta_r_deg = 0.0;
+  std::string table;                  ///< "sound", "doubtful", "contradicts itself": its reciprocity and energy
+  double largest_gap = 0.0;           ///< relative, between two exchanged directions of the table
+  std::vector<std::string> findings;  ///< what is to be said of the table
+  std::string note;                   ///< of an import: what became of it
+  // Of one that was asked for; not in lists:
+  double coverage_factor = 0.0;
+  double correlation = 0.0;  ///< of the errors of any two entries
+  double u_integral = 0.0;   ///< relative, k = 1
+  std::vector<CertificateEntryReport> entries;
+  std::vector<ShapeModeReport> modes;
+  std::string text;  ///< the file
 };
 struct ReferenceList {
   std::vector<ReferenceReport> references;

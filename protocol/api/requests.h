@@ -61,6 +61,16 @@ struct AbortRequest {
   std::string reason;
 };
 
+/// A reference standard for the daemon's shelf, or to be looked at.
+struct ReferenceImport {
+  std::string text;        ///< reference/*.toml, the same without [shape], or a certificate as CSV
+  std::string file;        ///< the user's name for it, shown in errors; ".csv" says what it is
+  std::string shape;       ///< a shape table as CSV; empty: in the text, or `shape_of`
+  std::string shape_file;  ///< likewise
+  std::string shape_of;    ///< or the shape of this standard of the shelf
+  bool replace = false;    ///< a standard of this serial number with another text
+};
+
 /// The body of a command that needs no words: `{}` or nothing.
 struct NoWords {};
 

@@ -52,6 +52,9 @@ enum class RouteId : std::uint8_t {
   AnalysisOne,
   AnalysisFile,
   AnalysisCancel,
+  ReferenceImport,
+  ReferenceCheck,
+  ReferenceOne,
 };
 
 /// One way into the daemon. A name in braces, as `{scan}`, stands for a number.
@@ -126,6 +129,11 @@ inline constexpr std::array kRoutes{
     Route{RouteId::AnalysisFile, Method::Get, "/api/v1/analysis/{job}/file", Permission::Viewer, "", kBytes, false, 0},
     Route{RouteId::AnalysisCancel, Method::Post, "/api/v1/analysis/{job}/cancel", Permission::Viewer, kJson, kJson,
           true, kSmallBody},
+    Route{RouteId::ReferenceImport, Method::Post, "/api/v1/references", Permission::Operator, kJson, kJson, true,
+          kPlanBody},
+    Route{RouteId::ReferenceCheck, Method::Post, "/api/v1/references:check", Permission::Viewer, kJson, kJson, false,
+          kPlanBody},
+    Route{RouteId::ReferenceOne, Method::Get, "/api/v1/reference", Permission::Viewer, "", kJson, false, 0},
 };
 
 constexpr bool routes_are_in_order() {

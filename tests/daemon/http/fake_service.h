@@ -134,7 +134,22 @@ class FakeService final : public daemon::Service {
   }
   Result<api::BrdfPage> brdf(std::int64_t, std::int64_t, int) override { return api::BrdfPage{}; }
   Result<std::string> export_csv(std::int64_t) override { return std::string("# scan: 3\npoint,theta_i_deg\n0,30\n"); }
-  Result<api::ReferenceList> references() override { return api::ReferenceList{}; }
+  Result<api::ReferenceList> references() override { return api::ReferenceList{{white()}}; }
+  Result<api::ReferenceReport> reference(const std::string& serial) override {
+    if (serial != "SRT-1")
+      return failure({.code = ErrorCode::NotFound, .seen = "there is no standard \"" + serial + "\""});
+    return white();
+  }
+  Result<api::ReferenceReport> check_reference(const api::ReferenceImport& request) override {
+    note("check " + api::to_json(request));
+    api::ReferenceReport report = white();
+    if (request.text.find("doubt") != std::string::npos) report.table = "contradicts itself";
+    return report;
+  }
+  Result<api::ReferenceReport> import_reference(const api::ReferenceImport& request, const std::string& who) override {
+    note("import " + api::to_json(request) + " " + who);
+    return white();
+  }
   api::InstrumentReport instrument() override {
     return {.name = "bench A",
             .axes = {{.name = "theta_i",
@@ -171,6 +186,26 @@ class FakeService final : public daemon::Service {
       if (event.number > after && std::ssize(found) < at_most) found.push_back(event);
     }
     return found;
+  }
+
+  static api::ReferenceReport white() {
+    return {.serial = "SRT-1",
+            .material = "Spectralon 99 %",
+            .file = "reference/SRT-1.toml",
+            .certificate_date = "2025-11-03",
+            .expires = "2027-11-03",
+            .error = std::nullopt,
+            .geometry = "8/h",
+            .from_nm = 450.0,
+            .to_nm = 650.0,
+            .last_theta_i_deg = 75.0,
+            .last_theta_r_deg = 75.0,
+            .table = "sound",
+            .largest_gap = 0.0004,
+            .findings = {"as written it gives 1.0280"},
+            .entries = {{550.0, 0.9898, 0.00265}},
+            .modes = {{"limb", "limb", 0.01, std::nullopt}},
+            .text = "[standard]\n"};
   }
 
   /// Makes the next event durable and gives it back for publishing.

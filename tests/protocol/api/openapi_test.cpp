@@ -121,6 +121,7 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<ChartReport>(document, "ChartReport");
   expect_schema<UseCalibrationRequest>(document, "UseCalibrationRequest");
   expect_schema<RecomputeRequest>(document, "RecomputeRequest");
+  expect_schema<ReferenceImport>(document, "ReferenceImport");
   expect_schema<NoWords>(document, "NoWords");
   expect_schema<AnalysisRequest>(document, "AnalysisRequest");
   expect_schema<AnalysisReport>(document, "AnalysisReport");
