@@ -45,6 +45,7 @@ class CommandLine {
     CLI::App& reference = group("reference", "reference standards");
     leaf(reference, "list", "the standards this daemon knows", Verb::ReferenceList);
     add_calibration();
+    add_reference();
   }
 
   [[nodiscard]] CLI::App& app() { return app_; }
@@ -182,6 +183,23 @@ class CommandLine {
     replay.add_option("--store", wanted_.replay.store, "the database that it makes (TAPE.sqlite)");
     replay.add_option("--against", wanted_.replay.against, "compare with this database, times aside");
     replay.add_option("--instrument", wanted_.replay.instrument, "another instrument.toml than the tape's");
+  }
+
+  void add_reference() {
+    CLI::App& reference = group("reference", "reference standards");
+    leaf(reference, "list", "the standards this daemon knows", Verb::ReferenceList);
+    leaf(reference, "show", "one standard: certificate, modes, what is to be said of its table", Verb::ReferenceShow)
+        ->add_option("serial", wanted_.serial, "its serial number")
+        ->required();
+    CLI::App& check =
+        *leaf(reference, "check", "look at a file before it is imported; nothing is written", Verb::ReferenceCheck);
+    CLI::App& import = *leaf(reference, "import", "put a standard on the daemon's shelf", Verb::ReferenceImport);
+    for (CLI::App* made : {&check, &import}) {
+      made->add_option("file", wanted_.file, "reference.toml, or a certificate as CSV")->required();
+      CLI::Option* shape = made->add_option("--shape", wanted_.shape_file, "a shape table as CSV");
+      made->add_option("--shape-of", wanted_.shape_of, "take the shape of this standard of the shelf")->excludes(shape);
+    }
+    import.add_flag("--replace", wanted_.replace, "a standard of this serial number with another text");
   }
 
   void add_data() {

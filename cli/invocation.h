@@ -57,6 +57,9 @@ enum class Verb : std::uint8_t {
   CalibrationUse,
   CalibrationChart,
   ScanRecompute,
+  ReferenceShow,
+  ReferenceCheck,
+  ReferenceImport,
 };
 
 /// What the command line asks for.
@@ -85,6 +88,10 @@ struct Invocation {
   bool preempt = false;       ///< run
   std::string start_utc;      ///< run: not before
   api::ChangeRequest change;  ///< of a scan's rest
+  std::string serial;         ///< reference show
+  std::string shape_file;     ///< reference import, check: a shape as CSV
+  std::string shape_of;       ///< likewise: a standard of the shelf
+  bool replace = false;       ///< reference import
   std::string key;            ///< Idempotency-Key; empty: a new one
   api::MoveRequest target;    ///< of a move by hand
   api::DetectorReadRequest reading;

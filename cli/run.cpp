@@ -16,6 +16,7 @@
 #include "cli/files.h"
 #include "cli/invocation.h"
 #include "cli/plan_files.h"
+#include "cli/reference_files.h"
 #include "cli/scan_comparison.h"
 #include "cli/scan_watch.h"
 #include "cli/views.h"
@@ -130,6 +131,13 @@ class Runner {
         return show(client_.post<api::AnalysisReport>(RouteId::AnalysisCancel, wanted_.job, "{}"));
       case Verb::ReferenceList:
         return list_references();
+      case Verb::ReferenceShow:
+        return show_reference(
+            client_.get<api::ReferenceReport>(RouteId::ReferenceOne, 0, "serial=" + query_text(wanted_.serial)));
+      case Verb::ReferenceCheck:
+        return send_reference(RouteId::ReferenceCheck);
+      case Verb::ReferenceImport:
+        return send_reference(RouteId::ReferenceImport);
       case Verb::Instrument:
         return show(client_.get<api::InstrumentReport>(RouteId::Instrument));
       case Verb::Doctor:
@@ -191,6 +199,22 @@ class Runner {
     return show_list(
         client_.get<api::ReferenceList>(RouteId::References),
         [](const api::ReferenceList& list) -> const auto& { return list.references; });
+  }
+
+  // Exit code 1: its table contradicts itself.
+  Result<int> show_reference(const Result<Told<api::ReferenceReport>>& told) {
+    const Result<int> shown = show(told);
+    if (!shown) return shown;
+    if (wanted_.format == Format::Table) {
+      for (const std::string& finding : told->value.findings) world_.out << "its table: " << finding << '\n';
+    }
+    return told->value.table == kContradiction ? 1 : 0;
+  }
+
+  Result<int> send_reference(RouteId route) {
+    const auto request = read_reference(wanted_.file, wanted_.shape_file, wanted_.shape_of, wanted_.replace);
+    if (!request) return failure(request.error());
+    return show_reference(client_.post<api::ReferenceReport>(route, 0, api::to_json(*request)));
   }
 
   Result<int> command(RouteId route, const std::string& body) {

@@ -253,15 +253,6 @@ Table view(const api::ScanList& scans) {
   return table;
 }
 
-Table view(const api::ReferenceList& references) {
-  Table table{.header = {"serial", "material", "certificate", "expires", "file", "error"}, .rows = {}};
-  for (const api::ReferenceReport& reference : references.references) {
-    table.rows.push_back({reference.serial, reference.material, reference.certificate_date, reference.expires,
-                          reference.file, error_text(reference.error)});
-  }
-  return table;
-}
-
 Table view(const api::InstrumentReport& instrument) {
   Facts facts;
   facts.add("instrument", instrument.name)

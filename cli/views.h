@@ -14,6 +14,7 @@ namespace gonio::cli {
 [[nodiscard]] Table view(const api::ScanReport& scan);
 [[nodiscard]] Table view(const api::ScanList& scans);
 [[nodiscard]] Table view(const api::ReferenceList& references);
+[[nodiscard]] Table view(const api::ReferenceReport& reference);
 [[nodiscard]] Table view(const api::CommandReport& command);
 [[nodiscard]] Table view(const api::StopReport& stop);
 [[nodiscard]] Table view(const api::Event& event);
