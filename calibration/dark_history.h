@@ -57,6 +57,7 @@ class DarkHistory {
   /// Linear in time between the two bracketing visits of the same rung; beyond the first or last, the nearest. Nothing
   /// when no dark was taken at this rung. The pointers live as long as this object.
   [[nodiscard]] std::optional<DarkLevel> at(ExposureRung rung, Instant when) const;
+  [[nodiscard]] const std::map<ExposureRung, std::vector<DarkVisit>>& visits() const { return visits_; }
 
  private:
   std::map<ExposureRung, std::vector<DarkVisit>> visits_;  ///< in time order

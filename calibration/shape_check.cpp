@@ -14,6 +14,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDigitsOfATable = 1e-3;
 constexpr double kPercent = 100.0;
 constexpr double kExpanded = 2.0;  // times u: beyond it the table contradicts itself
+// What tables of white standards return too much at 60 to 75 deg without being wrong by as much anywhere that is used.
+constexpr double kExcessOfTables = 0.05;
 
 double square_of(double x) {
   return x * x;
@@ -200,13 +202,13 @@ class ShapeInspection {
   void judge() {
     const double pair = report_.worst_pair ? in_own_u(*report_.worst_pair) : 0.0;
     const double share = report_.brightest ? in_own_u(*report_.brightest) : 0.0;
-    const double worst = std::max(pair, share);
-    report_.verdict = worst <= 1.0         ? ShapeVerdict::Sound
-                      : worst <= kExpanded ? ShapeVerdict::Doubtful
-                                           : ShapeVerdict::Contradicts;
+    const bool is_too_bright = share > kExpanded && report_.brightest->reflectance > 1.0 + kExcessOfTables;
+    report_.verdict = pair > kExpanded || is_too_bright ? ShapeVerdict::Contradicts
+                      : pair > 1.0 || share > 1.0       ? ShapeVerdict::Doubtful
+                                                        : ShapeVerdict::Sound;
     if (pair > 1.0) report_.findings.push_back(pair_sentence());
     if (share > 1.0) report_.findings.push_back(share_sentence());
-    if (share > pair && pair > 1.0) std::swap(report_.findings[0], report_.findings[1]);
+    if (is_too_bright && pair > 1.0 && pair <= kExpanded) std::swap(report_.findings[0], report_.findings[1]);
     add_scale_sentence();
   }
 
@@ -241,8 +243,9 @@ class ShapeInspection {
   // A file may have any scale; one that is nearly right was meant to be right.
   void add_scale_sentence() {
     constexpr double kMeantToBeOne = 0.2;
+    constexpr double kOwnCap = 5e-3;  // what its author put where the table ends
     const double off = std::abs(report_.as_written - 1.0);
-    if (off <= kDigitsOfATable || off > kMeantToBeOne) return;
+    if (off <= kOwnCap || off > kMeantToBeOne) return;
     report_.findings.push_back(
         fmt::format("as written it gives {:.4f} in the certificate's own geometry, not 1: it counts as a shape alone, "
                     "times {:.4f}",

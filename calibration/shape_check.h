@@ -13,7 +13,7 @@
 
 namespace gonio::calibration {
 
-/// What a table is worth beside its own uncertainty, u(k = 1) of its modes: every finding within u, within 2 u, beyond.
+/// What a table is worth beside its own uncertainty, u (k = 1) of its modes; the rule stands at check_shape.
 enum class ShapeVerdict : std::uint8_t { Sound, Doubtful, Contradicts };
 /// "sound", "doubtful", "contradicts itself".
 [[nodiscard]] std::string_view verdict_name(ShapeVerdict verdict);
@@ -49,9 +49,10 @@ struct ShapeReport {
 ///
 /// Reciprocity: of two exchanged nodes one is wrong by at least half their gap. Half a gap within u of the modes at
 /// that geometry (0.1 % added in quadrature: the digits of a printed table) is sound, within 2 u doubtful, beyond it
-/// the table contradicts the uncertainty that it states. Energy: the same rule for what the reflectance of any theta is
-/// above 1, at each entry of the certificate. The integrals are exact for the interpolated table (hat functions against
-/// sin theta cos theta); beyond its last theta the edge holds. Some ms for 25 x 25 x 25 nodes. Threads: any.
+/// the table contradicts the uncertainty that it states. Energy: what the reflectance of any theta is above 1, at each
+/// entry of the certificate, is doubtful beyond u, and a contradiction where it is beyond both 2 u and 5 %. The
+/// integrals are exact for the interpolated table (hat functions against sin theta cos theta); beyond its last theta
+/// the edge holds. Some ms for 25 x 25 x 25 nodes. Threads: any.
 [[nodiscard]] ShapeReport check_shape(const ReferenceStandard& standard);
 
 /// Errors: InvalidInput at the table, with the worst pair or the excess, when the report says `Contradicts`.

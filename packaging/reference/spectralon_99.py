@@ -11,7 +11,7 @@ near published figures; rho_b so that 8/h is the certificate's. No table of anyb
 """
 import math
 
-A, G, B, H = 0.24, 0.55, 0.06, 0.15
+A, G, B, H = 0.28, 0.50, 0.06, 0.15
 WAVELENGTHS = (350.0, 1500.0, 2500.0)
 THETAS = (0, 10, 20, 30, 40, 45, 50, 55, 60, 65, 70, 75)  # beyond it nothing is published that we would sign
 PHIS = tuple(range(0, 181, 15))

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include "sim/scene/papers.h"
@@ -118,13 +120,56 @@ TEST(ShapeCheck, LooksAtEachWavelengthsTable) {
   EXPECT_THAT(report.findings.at(0), HasSubstr("at 650 nm"));
 }
 
-TEST(ShapeCheck, TheSimulatorsStandardIsSound) {
+// Its forward lobe brings 1.6 % too much light at 70 deg: said, and not refused.
+TEST(ShapeCheck, TheSimulatorsStandardIsReciprocalAndReturnsSomewhatTooMuchAtGrazingAngles) {
   sim::ReferenceSpec spec{.certificate = {{nanometres(550.0), 0.9898, 0.0053}}, .u_integral = 0.001};
   spec.modes = {{.kind = sim::ModeKind::Limb, .u = 0.01}};
 
   const ShapeReport report = check_shape(parsed(sim::reference_toml(spec)));
 
+  EXPECT_EQ(report.verdict, ShapeVerdict::Doubtful);
+  EXPECT_LT(report.largest_gap, 1e-4);
+  ASSERT_FALSE(report.findings.empty());
+  EXPECT_THAT(report.findings[0], HasSubstr("more light than it gets: 1.016"));
+}
+
+// What is published: 0/45 factor 1.01 to 1.02, a hot spot, forward at grazing angles; and an uncertainty that says so.
+TEST(ShapeCheck, TheShippedStandardIsReciprocalAndKeepsEnergyAndIsHonestAboveSixtyDegrees) {
+  std::ifstream in(std::string(GONIO_SOURCE_DIR) + "/packaging/reference/SPECTRALON-99-LITERATURE.toml");
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const ReferenceStandard white = parsed(text);
+
+  const ShapeReport report = check_shape(white);
+
   EXPECT_EQ(report.verdict, ShapeVerdict::Sound) << (report.findings.empty() ? "" : report.findings[0]);
+  EXPECT_TRUE(report.findings.empty());
+  EXPECT_LT(report.largest_gap, 2e-4);  // the digits that are printed
+  const auto at = [](double i, double r, double phi) {
+    return Geometry{.theta_i = degrees(i), .phi_i = {}, .theta_r = degrees(r), .phi_r = degrees(phi)};
+  };
+  for (const double nm : {400.0, 550.0, 1000.0}) {
+    const Wavelength wavelength = nanometres(nm);
+    EXPECT_TRUE(white.check_reach(wavelength, at(70.0, 75.0, 180.0)));
+    EXPECT_GE(white.shape(at(0, 45, 0), wavelength), 1.01) << nm;
+    EXPECT_LE(white.shape(at(0, 45, 0), wavelength), 1.02) << nm;
+    EXPECT_NEAR(white.shape(at(0, 0, 0), wavelength), 1.07, 0.02);
+    EXPECT_NEAR(white.shape(at(60, 60, 180), wavelength), 1.16, 0.04);
+    EXPECT_NEAR(white.shape(at(70, 70, 180), wavelength), 1.6, 0.1);
+  }
+  const auto u = [&](const Geometry& g) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < white.modes().size(); ++k) {
+      sum += std::pow(white.mode(k, g, nanometres(550.0)) * white.modes()[k].u, 2);
+    }
+    return std::sqrt(sum);
+  };
+  EXPECT_LT(u(at(0, 45, 0)), 0.006);
+  for (const double theta : {62.0, 70.0}) {
+    for (const double phi : {0.0, 90.0, 180.0}) {
+      EXPECT_GE(u(at(theta, theta, phi)), 0.02) << theta << ' ' << phi;
+      EXPECT_LE(u(at(theta, theta, phi)), phi == 0.0 ? 0.08 : 0.06) << theta << ' ' << phi;  // the hot spot
+    }
+  }
 }
 
 }  // namespace
