@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "calibration/cosine_weights.h"
+
 namespace gonio::calibration {
 namespace {
 
@@ -21,19 +23,9 @@ double square_of(double x) {
   return x * x;
 }
 
-// The integral of each node's hat function with sin theta cos theta over 0 to 90 deg; beyond the last node it stays 1.
-std::vector<double> cosine_weights(const std::vector<Angle>& grid) {
-  const auto m0 = [](double t) { return -0.25 * std::cos(2.0 * t); };
-  const auto m1 = [](double t) { return 0.125 * std::sin(2.0 * t) - 0.25 * t * std::cos(2.0 * t); };
-  std::vector<double> weights(grid.size(), 0.0);
-  for (std::size_t k = 0; k + 1 < grid.size(); ++k) {
-    const double a = grid[k].si();
-    const double b = grid[k + 1].si();
-    const double zeroth = m0(b) - m0(a);
-    const double first = m1(b) - m1(a);
-    weights[k] += (b * zeroth - first) / (b - a);
-    weights[k + 1] += (first - a * zeroth) / (b - a);
-  }
+// Over 0 to 90 deg; beyond the last node its value stays.
+std::vector<double> hemisphere_weights(const std::vector<Angle>& grid) {
+  std::vector<double> weights = cosine_weights(grid);
   weights.back() += 0.5 * square_of(std::cos(grid.back().si()));
   return weights;
 }
@@ -135,7 +127,7 @@ class ShapeInspection {
   [[nodiscard]] Integrals integrals(std::size_t n, bool is_of_incidence, std::size_t fixed) const {
     const ShapeTable& table = standard_.shapes()[n].table;
     const std::vector<double> around = azimuth_weights(table.phi());
-    const std::vector<double> down = cosine_weights(is_of_incidence ? table.theta_r() : table.theta_i());
+    const std::vector<double> down = hemisphere_weights(is_of_incidence ? table.theta_r() : table.theta_i());
     Integrals sums{.shape = 0.0, .modes = std::vector<double>(standard_.modes().size(), 0.0)};
     for (std::size_t t = 0; t < down.size(); ++t) {
       for (std::size_t p = 0; p < around.size(); ++p) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "calibration/checks/check_parts.h"
+#include "calibration/cosine_weights.h"
 
 namespace gonio::calibration {
 namespace {
@@ -63,23 +64,19 @@ std::optional<std::vector<double>> weights_around(const std::vector<OnRing>& poi
   return weights;
 }
 
-double sin_cos(double theta) {
-  return std::sin(theta) * std::cos(theta);
-}
-
-// The sum over the rings, trapezoids in theta between the first and the last: what lies beyond is left out, and can
-// only add. Nothing when a ring is not closed.
+// The sum over the rings, linear in theta between the first and the last: what lies beyond is left out, and can only
+// add. Nothing when a ring is not closed.
 std::optional<std::vector<SumTerm>> terms_of(const std::vector<Ring>& rings) {
+  std::vector<Angle> thetas;
+  for (const Ring& ring : rings) thetas.push_back(radians(ring.theta));
+  const std::vector<double> down = cosine_weights(thetas);
   std::vector<SumTerm> terms;
   for (std::size_t r = 0; r < rings.size(); ++r) {
     const auto around = weights_around(rings[r].points, rings[r].theta < 1e-6);
     if (!around) return std::nullopt;
-    const double below = r > 0 ? rings[r].theta - rings[r - 1].theta : 0.0;
-    const double above = r + 1 < rings.size() ? rings[r + 1].theta - rings[r].theta : 0.0;
-    const double down = 0.5 * (below + above) * sin_cos(rings[r].theta);
     for (std::size_t k = 0; k < around->size(); ++k) {
       const CalibratedPoint& point = *rings[r].points[k].point;
-      terms.push_back({.weight = down * (*around)[k], .value = point.value, .budget = &point.budget});
+      terms.push_back({.weight = down[r] * (*around)[k], .value = point.value, .budget = &point.budget});
     }
   }
   return terms;
@@ -103,8 +100,14 @@ std::vector<Ring> coarser(const std::vector<Ring>& rings) {
   std::vector<Ring> every_other;
   for (std::size_t r = 0; r < rings.size(); ++r) {
     if (r % 2 != 0 && r + 1 != rings.size()) continue;
+    double last_phi = 0.0;
     Ring ring{.theta = rings[r].theta, .points = {}};
-    for (std::size_t k = 0; k < rings[r].points.size(); k += 2) ring.points.push_back(rings[r].points[k]);
+    std::size_t azimuths = 0;  // those of points measured on both sides stand there twice
+    for (const OnRing& point : rings[r].points) {
+      if (ring.points.empty() || point.phi > last_phi + 1e-6) ++azimuths;
+      last_phi = point.phi;
+      if (azimuths % 2 == 1) ring.points.push_back(point);
+    }
     every_other.push_back(std::move(ring));
   }
   return every_other;
