@@ -204,6 +204,11 @@ class CommandLine {
 
   void add_data() {
     CLI::App& data = group("data", "results");
+    scan_leaf(data, "check", "self-checks: closure, reciprocity, symmetry, energy, repeats, dark, exposures",
+              Verb::DataCheck);
+    scan_leaf(data, "budget", "the uncertainty budget of a point, the largest share first", Verb::DataBudget)
+        .add_option("point", wanted_.point, "by index (the point of median U)")
+        ->check(CLI::NonNegativeNumber);
     CLI::App& exported = scan_leaf(data, "export", "BRDF with uncertainty, as a file", Verb::DataExport);
     std::vector<std::string> formats{"csv"};
     formats.insert(formats.end(), api::kExportFormats.begin(), api::kExportFormats.end());

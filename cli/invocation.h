@@ -60,6 +60,8 @@ enum class Verb : std::uint8_t {
   ReferenceShow,
   ReferenceCheck,
   ReferenceImport,
+  DataCheck,
+  DataBudget,
 };
 
 /// What the command line asks for.
@@ -88,6 +90,7 @@ struct Invocation {
   bool preempt = false;       ///< run
   std::string start_utc;      ///< run: not before
   api::ChangeRequest change;  ///< of a scan's rest
+  std::int64_t point = -1;    ///< data budget; -1: the one of median U
   std::string serial;         ///< reference show
   std::string shape_file;     ///< reference import, check: a shape as CSV
   std::string shape_of;       ///< likewise: a standard of the shelf

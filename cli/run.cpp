@@ -17,6 +17,7 @@
 #include "cli/invocation.h"
 #include "cli/plan_files.h"
 #include "cli/reference_files.h"
+#include "cli/review_views.h"
 #include "cli/scan_comparison.h"
 #include "cli/scan_watch.h"
 #include "cli/views.h"
@@ -131,6 +132,10 @@ class Runner {
         return show(client_.post<api::AnalysisReport>(RouteId::AnalysisCancel, wanted_.job, "{}"));
       case Verb::ReferenceList:
         return list_references();
+      case Verb::DataCheck:
+        return check_data();
+      case Verb::DataBudget:
+        return show_budget();
       case Verb::ReferenceShow:
         return show_reference(
             client_.get<api::ReferenceReport>(RouteId::ReferenceOne, 0, "serial=" + query_text(wanted_.serial)));
@@ -199,6 +204,31 @@ class Runner {
     return show_list(
         client_.get<api::ReferenceList>(RouteId::References),
         [](const api::ReferenceList& list) -> const auto& { return list.references; });
+  }
+
+  // Exit code 1: one of them failed.
+  Result<int> check_data() {
+    const auto told = client_.get<api::ScanChecksReport>(RouteId::ScanChecks, wanted_.scan);
+    const Result<int> shown = show_list(
+        told, [](const api::ScanChecksReport& report) -> const auto& { return report.checks; });
+    if (!shown) return shown;
+    if (wanted_.format == Format::Table) {
+      world_.out << '\n';
+      for (const auto& check : told->value.checks) world_.out << check.name << ": " << check.finding << '\n';
+      world_.out << told->value.summary << '\n';
+    }
+    return has_failed(told->value) ? 1 : 0;
+  }
+
+  Result<int> show_budget() {
+    const std::string query = wanted_.point < 0 ? "" : "point=" + std::to_string(wanted_.point);
+    const auto told = client_.get<api::BudgetReport>(RouteId::ScanBudget, wanted_.scan, query);
+    if (told && wanted_.format == Format::Table) {
+      print_facts(world_.out, budget_head(told->value));
+      world_.out << '\n';
+    }
+    return show_list(
+        told, [](const api::BudgetReport& report) -> const auto& { return report.terms; });
   }
 
   // Exit code 1: its table contradicts itself.

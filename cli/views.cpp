@@ -233,6 +233,7 @@ Table view(const api::ScanReport& scan) {
       .add("calibrations", scan.calibrations ? (scan.calibrations->empty() ? "none" : *scan.calibrations) : "")
       .add("median_U", percent_text(scan.median_relative_u))
       .add("worst_U", percent_text(scan.worst_relative_u))
+      .add("checks", scan.checks.value_or(""))
       .add("instrument_sha256", scan.instrument_sha256);
   return facts.take();
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "calibration/checks/check_scan.h"
-#include "calibration/dark_history.h"
 #include "calibration/normalised_reading.h"
+#include "calibration/scan_histories.h"
 #include "reflectance/check/group_chi_square.h"
 #include "reflectance/check/symmetry_point.h"
 
@@ -42,8 +42,7 @@ struct LevelReading {
   NormalisedReading reading;
   double u = 0.0;  ///< of q: noise, monitor and darks, widened by their degrees of freedom; without placing
 };
-[[nodiscard]] std::optional<LevelReading> level_of(const RawReading& raw, const DarkHistory& darks,
-                                                   const DetectorModel& detector);
+[[nodiscard]] std::optional<LevelReading> level_of(const RawReading& raw, const ReadingContext& context);
 
 // One check each, in order of CheckKind.
 [[nodiscard]] ScanCheck check_closure(const CalibratedScan& calibrated, const CheckInputs& inputs);

@@ -114,8 +114,8 @@ void judge_groups(ScanCheck& check, std::span<const std::vector<reflectance::Gro
   judge(check, n);
 }
 
-std::optional<LevelReading> level_of(const RawReading& raw, const DarkHistory& darks, const DetectorModel& detector) {
-  auto reading = normalise(raw, darks, detector);
+std::optional<LevelReading> level_of(const RawReading& raw, const ReadingContext& context) {
+  auto reading = normalise(raw, context);
   if (!reading) return std::nullopt;
   double variance =
       widened(reading->noise_dof) * reading->u_noise * reading->u_noise + reading->u_monitor * reading->u_monitor;
@@ -124,7 +124,7 @@ std::optional<LevelReading> level_of(const RawReading& raw, const DarkHistory& d
         share.level.before == nullptr ? 0.0 : (1.0 - share.level.weight_after) * share.level.before->u_dn;
     const double after = share.level.after == nullptr ? 0.0 : share.level.weight_after * share.level.after->u_dn;
     const double exposure_s = static_cast<double>(share.rung.exposure_us) * 1e-6;
-    const double drift = detector.u_dark_drift_dn_per_s * exposure_s * share.level.drift_widening;
+    const double drift = context.detector->u_dark_drift_dn_per_s * exposure_s * share.level.drift_widening;
     variance += share.dq_dlevel * share.dq_dlevel * (before * before + after * after + drift * drift);
   }
   if (!(variance > 0.0)) return std::nullopt;

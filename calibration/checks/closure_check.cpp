@@ -22,10 +22,10 @@ struct VisitLevel {
 class VisitClosure {
  public:
   explicit VisitClosure(const CheckInputs& inputs) : inputs_(inputs) {
-    const DarkHistory darks(inputs.scan, inputs.instrument.detector);
+    const ScanHistories histories(inputs.scan, inputs.instrument, {});
     for (const RawReading& raw : inputs.scan.readings) {
       if (raw.target != Target::Reference || raw.point_index || !raw.visited_point) continue;
-      const auto level = level_of(raw, darks, inputs.instrument.detector);
+      const auto level = level_of(raw, histories.context());
       if (level) places_[*raw.visited_point].push_back(of(*level));
     }
   }
@@ -116,8 +116,7 @@ class SampleClosure {
     };
     const auto errors = standard.certificate_errors(point.wavelength);
     for (const CertificateError& error : *errors) {
-      const auto entry_nm = [&] { return in_nanometres(standard.certificate().entries[*error.entry].wavelength); };
-      add(error.entry ? fmt::format("certificate at {:g} nm alone", entry_nm()) : "certificate", error.u);
+      add(certificate_error_name(standard.certificate(), error), error.u);
     }
     for (std::size_t k = 0; k < standard.modes().size(); ++k) {
       const ShapeMode& mode = standard.modes()[k];

@@ -1,6 +1,7 @@
 // What readings say of the instrument: the dark's history, and exposures that should agree.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -54,18 +55,27 @@ std::map<std::int64_t, std::vector<RawReading>> parts_by_attempt(const ScanReadi
   return attempts;
 }
 
+// Of coefficient n of the fitted linearity, and of the shutter's offset behind them: their correlation is left aside,
+// which can only widen what is allowed.
+double u_of_fit(const DetectorModel& detector, std::size_t n) {
+  const std::size_t size = detector.linearity.coefficients.size() + 1;
+  if (detector.linearity.covariance.size() != size * size) return n + 1 == size ? detector.exposure_offset_s.u : 0.0;
+  return std::sqrt(std::max(0.0, detector.linearity.covariance[n * size + n]));
+}
+
 // Light of one exposure, as one number: linearity, shutter and gain of a range have the sign of their own error.
-reflectance::GroupMember exposure_member(const LevelReading& level, const DetectorModel& detector) {
-  enum : std::uint32_t { kLinearity, kShutter, kFirstRange };
+reflectance::GroupMember exposure_member(const LevelReading& level, const DetectorModel& detector,
+                                         std::uint32_t range) {
+  enum : std::uint32_t { kLinearity, kShutter, kFit, kFirstRange = kFit + kLinearityTerms };
   const NormalisedReading& r = level.reading;
+  const std::size_t terms = detector.linearity.coefficients.size();
   std::vector<reflectance::SharedEffect> shared{
       {kLinearity, per_steradian(r.q * r.mean_net_dn / detector.full_scale_dn * detector.u_linearity)},
-      {kShutter, per_steradian(r.q * r.dlnq_dt0 * detector.exposure_offset_s.u)}};
-  if (detector.power && !r.darks.empty()) {
-    const auto range =
-        static_cast<std::uint32_t>(std::llround(std::log2(1.0 + static_cast<double>(r.darks[0].rung.range_pw)) * 1e4));
-    shared.push_back({kFirstRange + range, per_steradian(r.q * detector.power->u_range)});
+      {kShutter, per_steradian(r.q * r.dlnq_dt0 * u_of_fit(detector, terms))}};
+  for (std::size_t n = 0; n < terms; ++n) {
+    shared.push_back({kFit + static_cast<std::uint32_t>(n), per_steradian(r.dq_dlinearity[n] * u_of_fit(detector, n))});
   }
+  if (detector.power) shared.push_back({kFirstRange + range, per_steradian(r.q * detector.power->u_range)});
   return {r.q, level.u, reflectance::SharedEffects(shared)};
 }
 
@@ -110,15 +120,18 @@ ScanCheck check_dark_history(const CheckInputs& inputs) {
 ScanCheck check_exposures(const CheckInputs& inputs) {
   ScanCheck check{.kind = CheckKind::Exposures, .unit = "readings at a second exposure"};
   const DetectorModel& detector = inputs.instrument.detector;
-  const DarkHistory darks(inputs.scan, detector);
+  const ScanHistories histories(inputs.scan, inputs.instrument, {});
+  std::map<ExposureRung, std::uint32_t> ranges;  // numbered as they come
   std::vector<Group> groups;
   for (const auto& [attempt, parts] : parts_by_attempt(inputs.scan)) {
     Group group;
     std::set<ExposureRung> rungs;
     for (const RawReading& part : parts) {
-      const auto level = level_of(part, darks, detector);
-      if (!level || !rungs.insert(rung_of(part.frames.front())).second) continue;
-      group.push_back(exposure_member(*level, detector));
+      const ExposureRung rung = rung_of(part.frames.front());
+      const auto level = level_of(part, histories.context());
+      if (!level || !rungs.insert(rung).second) continue;
+      const auto range = ranges.try_emplace(rung, static_cast<std::uint32_t>(ranges.size())).first->second;
+      group.push_back(exposure_member(*level, detector, range));
     }
     if (group.size() < 2) continue;
     scale(group);

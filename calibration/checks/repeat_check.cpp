@@ -1,12 +1,12 @@
 // Points of one geometry, and check visits of the sample.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
 #include "calibration/checks/check_parts.h"
-#include "calibration/drift_history.h"
 
 namespace gonio::calibration {
 namespace {
@@ -74,15 +74,14 @@ class Repeats {
 
   // q of the sample at one geometry, cleared of the drift that visits of the standard saw.
   void compare_visits() {
-    const DarkHistory darks(inputs_.scan, inputs_.instrument.detector);
-    const DriftHistory drift(inputs_.scan, darks, inputs_.instrument);
+    const ScanHistories histories(inputs_.scan, inputs_.instrument, {});
     std::map<std::int32_t, Group> places;
     for (const RawReading& raw : inputs_.scan.readings) {
       if (raw.target != Target::Sample || raw.point_index || !raw.visited_point) continue;
-      const auto level = level_of(raw, darks, inputs_.instrument.detector);
+      const auto level = level_of(raw, histories.context());
       if (!level) continue;
       Group& group = places[*raw.visited_point];
-      group.push_back(member_of(*level, drift.at(level->reading.at), *raw.visited_point));
+      group.push_back(member_of(*level, histories.drift_at(level->reading.at), *raw.visited_point));
     }
     for (auto& [point, group] : places) {
       const std::vector<std::int32_t> points(group.size(), point);
@@ -101,7 +100,8 @@ class Repeats {
       g = drift->level;
       if (drift->before != nullptr) relative += std::pow((1.0 - drift->weight_after) * drift->before->u / g, 2);
       if (drift->after != nullptr) relative += std::pow(drift->weight_after * drift->after->u / g, 2);
-      relative += std::pow(drift->change / g, 2) * drift->weight_after * (1.0 - drift->weight_after);
+      const double bridge = std::max(drift->change, drift->wander) / g;
+      relative += bridge * bridge * (drift->is_between() ? drift->weight_after * (1.0 - drift->weight_after) : 1.0);
     }
     return {q / g, std::sqrt(level.u * level.u + q * q * relative) / g, {}};
   }

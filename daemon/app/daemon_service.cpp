@@ -18,6 +18,7 @@
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
 #include "daemon/app/version_desk.h"
+#include "daemon/app/scan_review.h"
 #include "daemon/planner/order_report.h"
 #include "daemon/store/version_list.h"
 
@@ -447,7 +448,30 @@ Result<api::ScanReport> DaemonService::scan(std::int64_t scan) {
   report.calibrations = version_list_text(brdf->versions);
   report.median_relative_u = u.median;
   report.worst_relative_u = u.worst;
+  report.checks = checks_in_short(scan, brdf->calibration);
   return report;
+}
+
+std::optional<std::string> DaemonService::checks_in_short(ScanId scan, std::int64_t calibration) {
+  constexpr std::size_t kRemembered = 10'000;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = checks_.find({scan, calibration});
+    if (known != checks_.end()) return known->second;
+  }
+  const Result<api::ScanChecksReport> found = checks(scan);
+  if (!found) return std::nullopt;  // the summary stands without them; GET checks says why
+  const std::lock_guard lock(mutex_);
+  if (calibration != 0 && checks_.size() < kRemembered) checks_[{scan, calibration}] = found->summary;
+  return found->summary;
+}
+
+Result<api::ScanChecksReport> DaemonService::checks(std::int64_t scan) {
+  return ask_store([scan](StoreReader& store) { return checks_of(store, scan); });
+}
+
+Result<api::BudgetReport> DaemonService::budget(std::int64_t scan, std::optional<std::int64_t> point) {
+  return ask_store([&](StoreReader& store) { return budget_of_point(store, scan, point); });
 }
 
 Result<api::PointPage> DaemonService::points(std::int64_t scan, std::int64_t after, int at_most) {

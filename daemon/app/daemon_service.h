@@ -1,8 +1,11 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/clock.h"
@@ -66,6 +69,8 @@ class DaemonService final : public Service {
   Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) override;
   Result<std::string> export_csv(std::int64_t scan) override;
   Result<api::ReferenceList> references() override;
+  Result<api::ScanChecksReport> checks(std::int64_t scan) override;
+  Result<api::BudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) override;
   Result<api::ReferenceReport> reference(const std::string& serial) override;
   Result<api::ReferenceReport> check_reference(const api::ReferenceImport& request) override;
   Result<api::ReferenceReport> import_reference(const api::ReferenceImport& request, const std::string& who) override;
@@ -92,10 +97,14 @@ class DaemonService final : public Service {
   /// Errors: InvalidInput.
   [[nodiscard]] Result<std::optional<ScanTurn::Start>> start_from(const std::string& text) const;
 
+  /// Of a scan that is over; looked at once for each of its calibrations.
+  [[nodiscard]] std::optional<std::string> checks_in_short(ScanId scan, std::int64_t calibration);
+
   Parts parts_;
   const Instant started_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<StoreReader>> readers_;
+  std::map<std::pair<ScanId, std::int64_t>, std::string> checks_;  ///< guarded by mutex_
 };
 
 }  // namespace gonio::daemon

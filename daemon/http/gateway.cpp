@@ -43,7 +43,9 @@ bool is_slow(RouteId id) {
          id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing ||
          id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::AnalysisFile ||
          id == RouteId::ScanRecompute || id == RouteId::CalibrationChart ||
-         id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck;
+         id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck ||
+         id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck || id == RouteId::ScanChecks ||
+         id == RouteId::ScanBudget;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
@@ -248,6 +250,13 @@ HttpResponse Gateway::read(const HttpRequest& request, const RouteMatch& match) 
       const auto name = request.query.find("name");
       Result<std::string> bytes = service_.analysis_file(match.scan, name == request.query.end() ? "" : name->second);
       return bytes ? success(api::kBytes, std::move(bytes).value()) : problem(bytes.error());
+    }
+    case RouteId::ScanChecks:
+      return json_response(service_.checks(match.scan));
+    case RouteId::ScanBudget: {
+      const bool is_asked = request.query.contains("point");
+      const std::int64_t point = number_in_query(request, "point", -1);
+      return json_response(service_.budget(match.scan, is_asked ? std::optional(point) : std::nullopt));
     }
     case RouteId::ReferenceCheck: {
       const auto reference = api::request_from_json<api::ReferenceImport>(request.body);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
 #include "protocol/api/requests.h"
+#include "protocol/api/scan_review.h"
 
 namespace gonio::daemon {
 
@@ -76,6 +78,9 @@ class Service {
   [[nodiscard]] virtual Result<api::BrdfPage> brdf(std::int64_t scan, std::int64_t after, int at_most) = 0;
   [[nodiscard]] virtual Result<std::string> export_csv(std::int64_t scan) = 0;
   [[nodiscard]] virtual Result<api::ReferenceList> references() = 0;
+  [[nodiscard]] virtual Result<api::ScanChecksReport> checks(std::int64_t scan) = 0;
+  /// Without a point: of the one of median U / |f|. Errors: NotFound, IncompleteData.
+  [[nodiscard]] virtual Result<api::BudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) = 0;
   /// Errors: NotFound, and what is wrong with its file.
   [[nodiscard]] virtual Result<api::ReferenceReport> reference(const std::string& serial) = 0;
   /// Looks at what an import would bring. Errors: those of the texts.

@@ -76,6 +76,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 learned_from_scans, brdf_values, median_relative_u, worst_relative_u,
                                                 priority, preempts, start_utc, queue_place, completes, completed_by,
                                                 calibrations, plan, plan_file, plan_parts)
+                                                seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
+                                                median_relative_u, worst_relative_u, priority, preempts, start_utc,
+                                                queue_place, completes, completed_by, calibrations, plan, plan_file,
+                                                plan_parts)
+                                                queue_place, completes, completed_by, plan, plan_file, plan_parts,
+                                                checks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(WarmUpReport, slope_percent_per_min, limit_percent_per_min, waited_s,
                                                 at_least_s, at_most_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
@@ -137,6 +143,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AbortRequest, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ResumeRequest, hold)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ChangeRequest, target_snr, max_time_s, order, seed, priority, start_utc,
                                                 reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanCheckReport, name, verdict, compared, unit, chi_square,
+                                                degrees_of_freedom, worst_z, p_value, worst_points, finding)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanChecksReport, scan, summary, false_alarm, checks)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BudgetTermReport, component, kind, distribution, u, unit, sensitivity,
+                                                contribution_per_sr, share_percent, degrees_of_freedom)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BudgetReport, scan, point, chosen, theta_i_deg, phi_i_deg, theta_r_deg,
+                                                phi_r_deg, wavelength_nm, brdf_per_sr, u_random_per_sr, u_shared_per_sr,
+                                                u_per_sr, degrees_of_freedom, k, expanded_u_per_sr, below_per_sr,
+                                                above_per_sr, method, flags, terms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceImport, text, file, shape, shape_file, shape_of, replace)
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisRequest, kind, scan, format, point, other_scan, model,
@@ -287,6 +302,10 @@ GONIO_REQUEST(ResumeRequest);
 GONIO_REQUEST(ChangeRequest);
 GONIO_REQUEST(UseCalibrationRequest);
 GONIO_REQUEST(RecomputeRequest);
+GONIO_REPORT(ScanCheckReport);
+GONIO_REPORT(ScanChecksReport);
+GONIO_REPORT(BudgetTermReport);
+GONIO_REPORT(BudgetReport);
 GONIO_REQUEST(ReferenceImport);
 GONIO_REQUEST(NoWords);
 

@@ -9,6 +9,7 @@
 #include "protocol/api/instrument_report.h"
 #include "protocol/api/reports.h"
 #include "protocol/api/requests.h"
+#include "protocol/api/scan_review.h"
 
 namespace gonio::api {
 

@@ -116,6 +116,7 @@ struct ScanReport {
   std::optional<std::string> plan;                ///< as it was sent; of one scan asked for, not in lists
   std::optional<std::string> plan_file;           ///< the user's name for it; likewise
   std::map<std::string, std::string> plan_parts;  ///< the files that the plan names, by name; likewise
+  std::optional<std::string> checks;              ///< how its self-checks came out, once over; of one scan asked for
 };
 
 /// A scan waits for the lamp to be warm.

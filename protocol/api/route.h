@@ -55,6 +55,8 @@ enum class RouteId : std::uint8_t {
   ReferenceImport,
   ReferenceCheck,
   ReferenceOne,
+  ScanChecks,
+  ScanBudget,
 };
 
 /// One way into the daemon. A name in braces, as `{scan}`, stands for a number.
@@ -134,6 +136,8 @@ inline constexpr std::array kRoutes{
     Route{RouteId::ReferenceCheck, Method::Post, "/api/v1/references:check", Permission::Viewer, kJson, kJson, false,
           kPlanBody},
     Route{RouteId::ReferenceOne, Method::Get, "/api/v1/reference", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::ScanChecks, Method::Get, "/api/v1/scans/{scan}/checks", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::ScanBudget, Method::Get, "/api/v1/scans/{scan}/budget", Permission::Viewer, "", kJson, false, 0},
 };
 
 constexpr bool routes_are_in_order() {

@@ -135,6 +135,45 @@ class FakeService final : public daemon::Service {
   Result<api::BrdfPage> brdf(std::int64_t, std::int64_t, int) override { return api::BrdfPage{}; }
   Result<std::string> export_csv(std::int64_t) override { return std::string("# scan: 3\npoint,theta_i_deg\n0,30\n"); }
   Result<api::ReferenceList> references() override { return api::ReferenceList{{white()}}; }
+  Result<api::ScanChecksReport> checks(std::int64_t scan) override {
+    return api::ScanChecksReport{.scan = scan,
+                                 .summary = "failed: reciprocity",
+                                 .false_alarm = 1e-3,
+                                 .checks = {{.name = "reciprocity",
+                                             .verdict = "failed",
+                                             .compared = 12,
+                                             .unit = "exchanged pairs",
+                                             .worst_z = 7.5,
+                                             .p_value = 1e-9,
+                                             .finding = "12 exchanged pairs: worst +7.5 u"}}};
+  }
+  Result<api::BudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) override {
+    if (point == 99) return failure({.code = ErrorCode::NotFound, .seen = "no value of such a point"});
+    return api::BudgetReport{.scan = scan,
+                             .point = point.value_or(4),
+                             .chosen = point ? "asked for" : "the point of median U / |f|",
+                             .brdf_per_sr = 0.25,
+                             .u_per_sr = 0.001,
+                             .k = 2.0,
+                             .expanded_u_per_sr = 0.002,
+                             .method = "law of propagation",
+                             .terms = {{.component = "certificate",
+                                        .kind = "shared",
+                                        .distribution = "normal",
+                                        .u = 0.0027,
+                                        .unit = "1",
+                                        .sensitivity = 0.25,
+                                        .contribution_per_sr = 0.000675,
+                                        .share_percent = 45.6},
+                                       {.component = "noise of the sample reading",
+                                        .kind = "random",
+                                        .distribution = "normal",
+                                        .u = std::nullopt,
+                                        .unit = "sr^-1",
+                                        .contribution_per_sr = 0.0007,
+                                        .share_percent = 54.4,
+                                        .degrees_of_freedom = 9.0}}};
+  }
   Result<api::ReferenceReport> reference(const std::string& serial) override {
     if (serial != "SRT-1")
       return failure({.code = ErrorCode::NotFound, .seen = "there is no standard \"" + serial + "\""});

@@ -122,6 +122,10 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<UseCalibrationRequest>(document, "UseCalibrationRequest");
   expect_schema<RecomputeRequest>(document, "RecomputeRequest");
   expect_schema<ReferenceImport>(document, "ReferenceImport");
+  expect_schema<ScanCheckReport>(document, "ScanCheckReport");
+  expect_schema<ScanChecksReport>(document, "ScanChecksReport");
+  expect_schema<BudgetTermReport>(document, "BudgetTermReport");
+  expect_schema<BudgetReport>(document, "BudgetReport");
   expect_schema<NoWords>(document, "NoWords");
   expect_schema<AnalysisRequest>(document, "AnalysisRequest");
   expect_schema<AnalysisReport>(document, "AnalysisReport");

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cli/output.h"
+#include "protocol/api/scan_review.h"
+
+namespace gonio::cli {
+
+/// A check a row.
+[[nodiscard]] Table view(const api::ScanChecksReport& report);
+[[nodiscard]] bool has_failed(const api::ScanChecksReport& report);
+
+/// What a reviewer signs: value, interval, method.
+[[nodiscard]] Table budget_head(const api::BudgetReport& budget);
+/// A component a row, the largest share first.
+[[nodiscard]] Table view(const api::BudgetReport& budget);
+
+}  // namespace gonio::cli
