@@ -17,8 +17,8 @@
 #include "daemon/app/reference_desk.h"
 #include "daemon/app/results.h"
 #include "daemon/app/scan_reports.h"
-#include "daemon/app/version_desk.h"
 #include "daemon/app/scan_review.h"
+#include "daemon/app/version_desk.h"
 #include "daemon/planner/order_report.h"
 #include "daemon/store/version_list.h"
 

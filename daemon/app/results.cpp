@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
 #include "calibration/calibrated_scan.h"
+#include "calibration/point_flags.h"
 #include "daemon/app/calibration_desk.h"
 #include "daemon/config/instrument.h"
 #include "daemon/store/version_list.h"
@@ -18,28 +18,6 @@ namespace {
 using calibration::PointFlag;
 
 constexpr int kPointsAtOnce = 5000;
-constexpr std::array kFlags{PointFlag::NearZero,
-                            PointFlag::DarkExtrapolated,
-                            PointFlag::FewNeighbours,
-                            PointFlag::BorrowedReference,
-                            PointFlag::UncertainDivisor,
-                            PointFlag::Drifted,
-                            PointFlag::InstrumentLimited,
-                            PointFlag::MonteCarlo,
-                            PointFlag::FewRepeats,
-                            PointFlag::Mixed,
-                            PointFlag::ReferenceExtrapolated,
-                            PointFlag::Blocked,
-                            PointFlag::Saturated};
-
-std::string flag_words(std::uint32_t flags) {
-  std::string words;
-  for (const PointFlag flag : kFlags) {
-    if (has(flags, flag)) words += (words.empty() ? "" : " ") + std::string(calibration::flag_name(flag));
-  }
-  return words;
-}
-
 void set_geometry(api::BrdfReport& report, const Geometry& g) {
   report.theta_i_deg = in_degrees(g.theta_i);
   report.phi_i_deg = in_degrees(g.phi_i);
@@ -83,7 +61,7 @@ api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row, const std::
   report.k = budget.k;
   report.expanded_u_per_sr = budget.expanded_per_sr;
   report.status = "accepted";
-  report.flags = flag_words(row->flags);
+  report.flags = calibration::flag_words(row->flags);
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "calibration/calibrate.h"
 #include "calibration/checks/check_scan.h"
 #include "calibration/point_flags.h"
+#include "daemon/app/version_desk.h"
 #include "daemon/config/instrument.h"
 
 namespace gonio::daemon {
@@ -20,26 +21,38 @@ using calibration::CalibratedScan;
 /// A scan calibrated anew: what the store keeps of a budget has its random part in one number.
 struct Review {
   ScanInfo info;
-  Instrument instrument;
+  calibration::InstrumentModel instrument;
   calibration::ReferenceStandard standard;
   calibration::ScanReadings readings;
   CalibratedScan calibrated;
 };
+
+// With the versions of the newest BRDF; of a scan without one, with those that count now.
+Result<ModelOfVersions> model_in_force(StoreReader& reader, ScanId scan, const Instrument& instrument,
+                                       const calibration::ScanReadings& readings) {
+  const Result<std::vector<FoundCalibration>> found = reader.found_calibrations();
+  if (!found) return failure(found.error());
+  const Result<BrdfInfo> stored = reader.brdf(scan);
+  if (!stored && stored.error().code != ErrorCode::NotFound) return failure(stored.error());
+  return model_with(*found, stored ? AskedVersions(stored->versions) : AskedVersions(), instrument, readings);
+}
 
 Result<Review> review_of(StoreReader& reader, ScanId scan) {
   Result<ScanInfo> info = reader.scan(scan);
   if (!info) return failure(info.error());
   const Result<ScanTexts> texts = reader.texts(scan);
   if (!texts) return failure(texts.error());
-  Result<Instrument> instrument = parse_instrument(texts->instrument, "the scan's instrument.toml");
+  const Result<Instrument> instrument = parse_instrument(texts->instrument, "the scan's instrument.toml");
   if (!instrument) return failure(instrument.error());
   auto standard = calibration::ReferenceStandard::parse(texts->reference, "the scan's reference");
   if (!standard) return failure(standard.error());
   Result<calibration::ScanReadings> readings = reader.readings(scan, instrument->stage);
   if (!readings) return failure(readings.error());
-  auto calibrated = calibration::calibrate(*readings, instrument->model, *standard, info->submitted);
+  Result<ModelOfVersions> chosen = model_in_force(reader, scan, *instrument, *readings);
+  if (!chosen) return failure(chosen.error());
+  auto calibrated = calibration::calibrate(*readings, chosen->model, *standard, info->submitted);
   if (!calibrated) return failure(calibrated.error());
-  return Review{std::move(*info), std::move(*instrument), std::move(*standard), std::move(*readings),
+  return Review{std::move(*info), std::move(chosen->model), std::move(*standard), std::move(*readings),
                 std::move(*calibrated)};
 }
 
@@ -161,7 +174,7 @@ Result<api::ScanChecksReport> checks_of(StoreReader& reader, ScanId scan) {
   if (!review) return failure(review.error());
   const auto checks = calibration::check_scan(
       review->calibrated, {.scan = review->readings,
-                           .instrument = review->instrument.model,
+                           .instrument = review->instrument,
                            .standard = review->standard,
                            .sample_is_the_standard = review->info.sample == review->standard.serial()});
   api::ScanChecksReport report{

@@ -45,7 +45,9 @@ bool is_slow(RouteId id) {
          id == RouteId::ScanRecompute || id == RouteId::CalibrationChart ||
          id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck ||
          id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck || id == RouteId::ScanChecks ||
-         id == RouteId::ScanBudget;
+         id == RouteId::ScanBudget ||
+         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::ReferenceImport ||
+         id == RouteId::ReferenceCheck || id == RouteId::ScanChecks || id == RouteId::ScanBudget;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
