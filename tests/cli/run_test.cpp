@@ -107,6 +107,61 @@ TEST_F(Gonioctl, APlanThatCannotBeReadIsNamedAndNothingIsSent) {
   EXPECT_THAT(service_.asked(), IsEmpty());
 }
 
+TEST_F(Gonioctl, ShowsAStandardWithItsCertificateModesAndWhatIsToBeSaidOfItsTable) {
+  EXPECT_EQ(run({"reference", "show", "SRT-1"}), 0);
+
+  EXPECT_THAT(out_.str(), HasSubstr("0.9898 +- 0"));
+  EXPECT_THAT(out_.str(), HasSubstr("limb, u 1 %"));
+  EXPECT_THAT(out_.str(), HasSubstr("sound"));
+  EXPECT_THAT(out_.str(), HasSubstr("as written it gives 1.0280"));
+  EXPECT_EQ(run({"reference", "show", "SRT 9"}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("SRT 9"));
+  EXPECT_EQ(run({"reference", "list"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("450 to 650"));
+}
+
+TEST_F(Gonioctl, ImportsACertificateWithItsShapeFromTwoFiles) {
+  test::write_text(folder_ / "c.csv", "C");
+  test::write_text(folder_ / "s.csv", "S");
+
+  EXPECT_EQ(run({"reference", "import", folder_ / "c.csv", "--shape", folder_ / "s.csv", "--replace"}), 0);
+
+  ASSERT_EQ(service_.asked().size(), 1U);
+  EXPECT_THAT(service_.asked()[0], HasSubstr("\"text\":\"C\""));
+  EXPECT_THAT(service_.asked()[0], HasSubstr("\"shape\":\"S\""));
+  EXPECT_THAT(service_.asked()[0], HasSubstr("\"replace\":true"));
+}
+
+TEST_F(Gonioctl, ATableThatContradictsItselfEndsACheckWithOne) {
+  test::write_text(folder_ / "good.toml", "fine");
+  test::write_text(folder_ / "bad.toml", "doubt");
+
+  EXPECT_EQ(run({"reference", "check", folder_ / "good.toml"}), 0);
+  EXPECT_EQ(run({"reference", "check", folder_ / "bad.toml"}), 1);
+  EXPECT_EQ(run({"reference", "check", folder_ / "none.toml"}), 2);
+}
+
+TEST_F(Gonioctl, AFailedSelfCheckIsSaidAndEndsWithOne) {
+  EXPECT_EQ(run({"data", "check", "3"}), 1);
+
+  EXPECT_THAT(out_.str(), HasSubstr("worst +7.5 u"));
+  EXPECT_THAT(out_.str(), HasSubstr("failed: reciprocity"));
+}
+
+TEST_F(Gonioctl, PrintsABudgetInWordsAndAsCsv) {
+  EXPECT_EQ(run({"data", "budget", "3"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("4 (the point of median U / |f|)"));
+  EXPECT_THAT(out_.str(), HasSubstr("k = 2.00, 95.45 %"));
+  EXPECT_THAT(out_.str(), HasSubstr("certificate"));
+
+  EXPECT_EQ(run({"data", "budget", "3", "7", "-o", "csv"}), 0);
+  EXPECT_THAT(out_.str(), testing::StartsWith("component,kind,distribution,u,unit,"));
+  EXPECT_THAT(out_.str(), HasSubstr("noise of the sample reading,random,normal,,sr^-1,,0.0007,54.40,9"));
+
+  EXPECT_EQ(run({"data", "budget", "3", "99"}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("no value of such a point"));
+}
+
 TEST_F(Gonioctl, SendsThePlanVerbatimWithItsNameAndKey) {
   const std::string path = plan_file("[scan]\n");
 

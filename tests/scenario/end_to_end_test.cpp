@@ -91,6 +91,19 @@ TEST_P(EndToEnd, AgreesWithTheTruthThatOnlyTheSimulatorKnows) {
   EXPECT_EQ(expect_agreement(bench_.measured_and_true(scan)), kPoints - kBlocked);
 }
 
+// A good scan says so of itself, and what its uncertainty is made of.
+TEST_P(EndToEnd, PassesItsSelfChecksAndShowsABudget) {
+  const std::string scan = std::to_string(measure());
+
+  const Finished checks = bench_.gonioctl({"data", "check", scan});
+  EXPECT_EQ(checks.exit_code, 0) << checks.output << checks.errors;
+  EXPECT_NE(checks.output.find("passed: "), std::string::npos) << checks.output;
+  const Finished budget = bench_.gonioctl({"data", "budget", scan});
+  EXPECT_EQ(budget.exit_code, 0) << budget.errors;
+  EXPECT_NE(budget.output.find("certificate"), std::string::npos) << budget.output;
+  EXPECT_NE(bench_.gonioctl({"scan", "show", scan}).output.find("checks"), std::string::npos);
+}
+
 // Across the lobe, the plan states three exposures, 1 to 128: the peak and the flank cannot use the same ones.
 TEST_P(EndToEnd, AgreesWithTheTruthWhenThePlanBracketsItsExposures) {
   const long scan = measure({.theta_i_deg = "[30]",
