@@ -42,12 +42,8 @@ bool is_slow(RouteId id) {
   return id == RouteId::PlanCheck || id == RouteId::ScanSubmit || id == RouteId::ScanBrdf ||
          id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing ||
          id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::AnalysisFile ||
-         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart ||
-         id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck ||
          id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck || id == RouteId::ScanChecks ||
-         id == RouteId::ScanBudget ||
-         id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::ReferenceImport ||
-         id == RouteId::ReferenceCheck || id == RouteId::ScanChecks || id == RouteId::ScanBudget;
+         id == RouteId::ScanBudget;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
