@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "calibration/reference_standard.h"
+#include "calibration/shape_check.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
 
@@ -36,6 +37,8 @@ void reference_toml(Bytes input) {
     hold_input_error(standard.error(), kFile, text);
     return;
   }
+  const calibration::ShapeReport shape = calibration::check_shape(*standard);
+  hold(std::isfinite(shape.largest_gap), "a table's gap is finite");
   const auto now = UtcTime(std::chrono::sys_days(std::chrono::year(2026) / 11 / 22));
   if (const auto valid = standard->check_date(now); !valid) hold_error(valid.error());
   for (const double lambda : {450.0, 568.0, 850.0}) {
