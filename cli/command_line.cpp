@@ -207,7 +207,7 @@ class CommandLine {
     scan_leaf(data, "check", "self-checks: closure, reciprocity, symmetry, energy, repeats, dark, exposures",
               Verb::DataCheck);
     scan_leaf(data, "budget", "the uncertainty budget of a point, the largest share first", Verb::DataBudget)
-        .add_option("point", wanted_.point, "by index (the point of median U)")
+        .add_option("point", wanted_.budget_point, "by index (the point of median U)")
         ->check(CLI::NonNegativeNumber);
     CLI::App& exported = scan_leaf(data, "export", "BRDF with uncertainty, as a file", Verb::DataExport);
     std::vector<std::string> formats{"csv"};

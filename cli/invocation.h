@@ -85,18 +85,18 @@ struct Invocation {
   bool move = false;       ///< doctor
   std::int64_t after = 0;  ///< events
   std::string reason;
-  std::string hold;           ///< resume: just this one
-  int priority = 0;           ///< run
-  bool preempt = false;       ///< run
-  std::string start_utc;      ///< run: not before
-  api::ChangeRequest change;  ///< of a scan's rest
-  std::int64_t point = -1;    ///< data budget; -1: the one of median U
-  std::string serial;         ///< reference show
-  std::string shape_file;     ///< reference import, check: a shape as CSV
-  std::string shape_of;       ///< likewise: a standard of the shelf
-  bool replace = false;       ///< reference import
-  std::string key;            ///< Idempotency-Key; empty: a new one
-  api::MoveRequest target;    ///< of a move by hand
+  std::string hold;                ///< resume: just this one
+  int priority = 0;                ///< run
+  bool preempt = false;            ///< run
+  std::string start_utc;           ///< run: not before
+  api::ChangeRequest change;       ///< of a scan's rest
+  std::int64_t budget_point = -1;  ///< -1: the one of median U
+  std::string serial;              ///< reference show
+  std::string shape_file;          ///< reference import, check: a shape as CSV
+  std::string shape_of;            ///< likewise: a standard of the shelf
+  bool replace = false;            ///< reference import
+  std::string key;                 ///< Idempotency-Key; empty: a new one
+  api::MoveRequest target;         ///< of a move by hand
   api::DetectorReadRequest reading;
   api::UseCalibrationRequest use;
   api::RecomputeRequest recompute;

@@ -221,7 +221,7 @@ class Runner {
   }
 
   Result<int> show_budget() {
-    const std::string query = wanted_.point < 0 ? "" : "point=" + std::to_string(wanted_.point);
+    const std::string query = wanted_.budget_point < 0 ? "" : "point=" + std::to_string(wanted_.budget_point);
     const auto told = client_.get<api::BudgetReport>(RouteId::ScanBudget, wanted_.scan, query);
     if (told && wanted_.format == Format::Table) {
       print_facts(world_.out, budget_head(told->value));
