@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "calibration/checks/check_parts.h"
 
@@ -26,19 +27,19 @@ class VisitClosure {
     for (const RawReading& raw : inputs.scan.readings) {
       if (raw.target != Target::Reference || raw.point_index || !raw.visited_point) continue;
       const auto level = level_of(raw, histories.context());
-      if (level) places_[*raw.visited_point].push_back(of(*level));
+      if (level) places_[{*raw.visited_point, raw.wavelength}].push_back(of(*level));
     }
   }
 
   void compare(ScanCheck& check) const {
-    for (const auto& [point, visits] : places_) {
+    for (const auto& [place, visits] : places_) {
       for (std::size_t k = 1; k + 1 < visits.size(); ++k) {
         if (visits[k + 1].at_s <= visits[k - 1].at_s) continue;
         ++check.compared;
         const double z = z_of(visits[k - 1], visits[k], visits[k + 1]);
         if (std::abs(z) <= std::abs(check.worst_z)) continue;
         check.worst_z = z;
-        check.worst_points = {point};
+        check.worst_points = {place.first};
       }
     }
   }
@@ -70,7 +71,7 @@ class VisitClosure {
   }
 
   const CheckInputs& inputs_;
-  std::map<std::int32_t, std::vector<VisitLevel>> places_;
+  std::map<std::pair<std::int32_t, Wavelength>, std::vector<VisitLevel>> places_;
 };
 
 /// f_s of the standard as sample, less its own f_ref at the same directions: what the certificate says of both cancels.
