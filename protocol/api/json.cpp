@@ -75,11 +75,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanReport, id, name, campaign, 
                                                 seconds_a_point, holds, doing, remaining_s, u_remaining_s,
                                                 learned_from_scans, brdf_values, median_relative_u, worst_relative_u,
                                                 priority, preempts, start_utc, queue_place, completes, completed_by,
-                                                calibrations, plan, plan_file, plan_parts)
-                                                seconds_a_point, holds, doing, remaining_s, u_remaining_s, brdf_values,
-                                                median_relative_u, worst_relative_u, priority, preempts, start_utc,
-                                                queue_place, completes, completed_by, calibrations, plan, plan_file,
-                                                plan_parts, checks)
+                                                calibrations, plan, plan_file, plan_parts, checks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(WarmUpReport, slope_percent_per_min, limit_percent_per_min, waited_s,
                                                 at_least_s, at_most_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrument, instrument_sha256, uptime_s, doing,
