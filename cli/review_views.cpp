@@ -24,7 +24,7 @@ bool has_failed(const api::ScanChecksReport& report) {
   return std::ranges::any_of(report.checks, [](const api::ScanCheckReport& c) { return c.verdict == "failed"; });
 }
 
-Table budget_head(const api::BudgetReport& budget) {
+Table budget_head(const api::PointBudgetReport& budget) {
   Table table{.header = {}, .rows = {{}}};
   const auto add = [&](std::string name, std::string value) {
     table.header.push_back(std::move(name));
@@ -47,7 +47,7 @@ Table budget_head(const api::BudgetReport& budget) {
   return table;
 }
 
-Table view(const api::BudgetReport& budget) {
+Table view(const api::PointBudgetReport& budget) {
   Table table{.header = {"component", "kind", "distribution", "u", "unit", "sensitivity_per_sr", "contribution_per_sr",
                          "share_percent", "degrees_of_freedom"},
               .rows = {}};

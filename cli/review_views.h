@@ -10,8 +10,8 @@ namespace gonio::cli {
 [[nodiscard]] bool has_failed(const api::ScanChecksReport& report);
 
 /// What a reviewer signs: value, interval, method.
-[[nodiscard]] Table budget_head(const api::BudgetReport& budget);
+[[nodiscard]] Table budget_head(const api::PointBudgetReport& budget);
 /// A component a row, the largest share first.
-[[nodiscard]] Table view(const api::BudgetReport& budget);
+[[nodiscard]] Table view(const api::PointBudgetReport& budget);
 
 }  // namespace gonio::cli

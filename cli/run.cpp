@@ -222,13 +222,13 @@ class Runner {
 
   Result<int> show_budget() {
     const std::string query = wanted_.budget_point < 0 ? "" : "point=" + std::to_string(wanted_.budget_point);
-    const auto told = client_.get<api::BudgetReport>(RouteId::ScanBudget, wanted_.scan, query);
+    const auto told = client_.get<api::PointBudgetReport>(RouteId::ScanBudget, wanted_.scan, query);
     if (told && wanted_.format == Format::Table) {
       print_facts(world_.out, budget_head(told->value));
       world_.out << '\n';
     }
     return show_list(
-        told, [](const api::BudgetReport& report) -> const auto& { return report.terms; });
+        told, [](const api::PointBudgetReport& report) -> const auto& { return report.terms; });
   }
 
   // Exit code 1: its table contradicts itself.

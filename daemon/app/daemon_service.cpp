@@ -470,7 +470,7 @@ Result<api::ScanChecksReport> DaemonService::checks(std::int64_t scan) {
   return ask_store([scan](StoreReader& store) { return checks_of(store, scan); });
 }
 
-Result<api::BudgetReport> DaemonService::budget(std::int64_t scan, std::optional<std::int64_t> point) {
+Result<api::PointBudgetReport> DaemonService::budget(std::int64_t scan, std::optional<std::int64_t> point) {
   return ask_store([&](StoreReader& store) { return budget_of_point(store, scan, point); });
 }
 

@@ -70,7 +70,7 @@ class DaemonService final : public Service {
   Result<std::string> export_csv(std::int64_t scan) override;
   Result<api::ReferenceList> references() override;
   Result<api::ScanChecksReport> checks(std::int64_t scan) override;
-  Result<api::BudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) override;
+  Result<api::PointBudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) override;
   Result<api::ReferenceReport> reference(const std::string& serial) override;
   Result<api::ReferenceReport> check_reference(const api::ReferenceImport& request) override;
   Result<api::ReferenceReport> import_reference(const api::ReferenceImport& request, const std::string& who) override;

@@ -132,28 +132,28 @@ std::string method_words(const calibration::Budget& budget) {
              : "law of propagation (JCGM 100:2008, eq 13), k by Welch-Satterthwaite (eq G.2b) for 95.45 %";
 }
 
-api::BudgetReport budget_report(const CalibratedScan& scan, const CalibratedPoint& point) {
+api::PointBudgetReport budget_report(const CalibratedScan& scan, const CalibratedPoint& point) {
   const calibration::Budget& budget = point.budget;
   const Geometry& g = point.geometry;
-  api::BudgetReport report{.point = point.point_index,
-                           .chosen = {},
-                           .theta_i_deg = in_degrees(g.theta_i),
-                           .phi_i_deg = in_degrees(g.phi_i),
-                           .theta_r_deg = in_degrees(g.theta_r),
-                           .phi_r_deg = in_degrees(g.phi_r),
-                           .wavelength_nm = in_nanometres(point.wavelength),
-                           .brdf_per_sr = point.value.si(),
-                           .u_random_per_sr = budget.u_random.si(),
-                           .u_shared_per_sr = budget.u_shared.si(),
-                           .u_per_sr = budget.u.si(),
-                           .degrees_of_freedom = finite(budget.degrees_of_freedom),
-                           .k = budget.k,
-                           .expanded_u_per_sr = budget.expanded.si(),
-                           .below_per_sr = budget.below.si(),
-                           .above_per_sr = budget.above.si(),
-                           .method = method_words(budget),
-                           .flags = calibration::flag_words(point.flags),
-                           .terms = {}};
+  api::PointBudgetReport report{.point = point.point_index,
+                                .chosen = {},
+                                .theta_i_deg = in_degrees(g.theta_i),
+                                .phi_i_deg = in_degrees(g.phi_i),
+                                .theta_r_deg = in_degrees(g.theta_r),
+                                .phi_r_deg = in_degrees(g.phi_r),
+                                .wavelength_nm = in_nanometres(point.wavelength),
+                                .brdf_per_sr = point.value.si(),
+                                .u_random_per_sr = budget.u_random.si(),
+                                .u_shared_per_sr = budget.u_shared.si(),
+                                .u_per_sr = budget.u.si(),
+                                .degrees_of_freedom = finite(budget.degrees_of_freedom),
+                                .k = budget.k,
+                                .expanded_u_per_sr = budget.expanded.si(),
+                                .below_per_sr = budget.below.si(),
+                                .above_per_sr = budget.above.si(),
+                                .method = method_words(budget),
+                                .flags = calibration::flag_words(point.flags),
+                                .terms = {}};
   double variance = 0.0;
   for (const auto* terms : {&budget.random, &budget.shared}) {
     for (const calibration::BudgetTerm& term : *terms) variance += term.per_sd.si() * term.per_sd.si();
@@ -183,12 +183,12 @@ Result<api::ScanChecksReport> checks_of(StoreReader& reader, ScanId scan) {
   return report;
 }
 
-Result<api::BudgetReport> budget_of_point(StoreReader& reader, ScanId scan, std::optional<std::int64_t> point) {
+Result<api::PointBudgetReport> budget_of_point(StoreReader& reader, ScanId scan, std::optional<std::int64_t> point) {
   const Result<Review> review = review_of(reader, scan);
   if (!review) return failure(review.error());
   const auto found = point ? asked_point(review->calibrated, *point) : median_point(review->calibrated);
   if (!found) return failure(found.error());
-  api::BudgetReport report = budget_report(review->calibrated, **found);
+  api::PointBudgetReport report = budget_report(review->calibrated, **found);
   report.scan = scan;
   report.chosen = point ? "asked for" : "the point of median U / |f|";
   return report;

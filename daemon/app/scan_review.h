@@ -15,7 +15,7 @@ namespace gonio::daemon {
 
 /// The budget of a point, its terms by their share; without one that of the point whose U / |f| is the median.
 /// Errors: those of compute_brdf; NotFound (no such point), IncompleteData (it has no value; why).
-[[nodiscard]] Result<api::BudgetReport> budget_of_point(StoreReader& reader, ScanId scan,
-                                                        std::optional<std::int64_t> point);
+[[nodiscard]] Result<api::PointBudgetReport> budget_of_point(StoreReader& reader, ScanId scan,
+                                                             std::optional<std::int64_t> point);
 
 }  // namespace gonio::daemon

@@ -80,7 +80,7 @@ class Service {
   [[nodiscard]] virtual Result<api::ReferenceList> references() = 0;
   [[nodiscard]] virtual Result<api::ScanChecksReport> checks(std::int64_t scan) = 0;
   /// Without a point: of the one of median U / |f|. Errors: NotFound, IncompleteData.
-  [[nodiscard]] virtual Result<api::BudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) = 0;
+  [[nodiscard]] virtual Result<api::PointBudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) = 0;
   /// Errors: NotFound, and what is wrong with its file.
   [[nodiscard]] virtual Result<api::ReferenceReport> reference(const std::string& serial) = 0;
   /// Looks at what an import would bring. Errors: those of the texts.

@@ -142,10 +142,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanCheckReport, name, verdict, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanChecksReport, scan, summary, false_alarm, checks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BudgetTermReport, component, kind, distribution, u, unit, sensitivity,
                                                 contribution_per_sr, share_percent, degrees_of_freedom)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BudgetReport, scan, point, chosen, theta_i_deg, phi_i_deg, theta_r_deg,
-                                                phi_r_deg, wavelength_nm, brdf_per_sr, u_random_per_sr, u_shared_per_sr,
-                                                u_per_sr, degrees_of_freedom, k, expanded_u_per_sr, below_per_sr,
-                                                above_per_sr, method, flags, terms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointBudgetReport, scan, point, chosen, theta_i_deg, phi_i_deg,
+                                                theta_r_deg, phi_r_deg, wavelength_nm, brdf_per_sr, u_random_per_sr,
+                                                u_shared_per_sr, u_per_sr, degrees_of_freedom, k, expanded_u_per_sr,
+                                                below_per_sr, above_per_sr, method, flags, terms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceImport, text, file, shape, shape_file, shape_of, replace)
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisRequest, kind, scan, format, point, other_scan, model,
@@ -299,7 +299,7 @@ GONIO_REQUEST(RecomputeRequest);
 GONIO_REPORT(ScanCheckReport);
 GONIO_REPORT(ScanChecksReport);
 GONIO_REPORT(BudgetTermReport);
-GONIO_REPORT(BudgetReport);
+GONIO_REPORT(PointBudgetReport);
 GONIO_REQUEST(ReferenceImport);
 GONIO_REQUEST(NoWords);
 

@@ -42,7 +42,7 @@ struct BudgetTermReport {
   std::optional<double> degrees_of_freedom;  ///< of u; none: as good as known
 };
 
-struct BudgetReport {
+struct PointBudgetReport {
   std::int64_t scan = 0;
   std::int64_t point = 0;
   std::string chosen;  ///< why this point: "asked for", "the point of median U / |f|"

@@ -147,32 +147,32 @@ class FakeService final : public daemon::Service {
                                              .p_value = 1e-9,
                                              .finding = "12 exchanged pairs: worst +7.5 u"}}};
   }
-  Result<api::BudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) override {
+  Result<api::PointBudgetReport> budget(std::int64_t scan, std::optional<std::int64_t> point) override {
     if (point == 99) return failure({.code = ErrorCode::NotFound, .seen = "no value of such a point"});
-    return api::BudgetReport{.scan = scan,
-                             .point = point.value_or(4),
-                             .chosen = point ? "asked for" : "the point of median U / |f|",
-                             .brdf_per_sr = 0.25,
-                             .u_per_sr = 0.001,
-                             .k = 2.0,
-                             .expanded_u_per_sr = 0.002,
-                             .method = "law of propagation",
-                             .terms = {{.component = "certificate",
-                                        .kind = "shared",
-                                        .distribution = "normal",
-                                        .u = 0.0027,
-                                        .unit = "1",
-                                        .sensitivity = 0.25,
-                                        .contribution_per_sr = 0.000675,
-                                        .share_percent = 45.6},
-                                       {.component = "noise of the sample reading",
-                                        .kind = "random",
-                                        .distribution = "normal",
-                                        .u = std::nullopt,
-                                        .unit = "sr^-1",
-                                        .contribution_per_sr = 0.0007,
-                                        .share_percent = 54.4,
-                                        .degrees_of_freedom = 9.0}}};
+    return api::PointBudgetReport{.scan = scan,
+                                  .point = point.value_or(4),
+                                  .chosen = point ? "asked for" : "the point of median U / |f|",
+                                  .brdf_per_sr = 0.25,
+                                  .u_per_sr = 0.001,
+                                  .k = 2.0,
+                                  .expanded_u_per_sr = 0.002,
+                                  .method = "law of propagation",
+                                  .terms = {{.component = "certificate",
+                                             .kind = "shared",
+                                             .distribution = "normal",
+                                             .u = 0.0027,
+                                             .unit = "1",
+                                             .sensitivity = 0.25,
+                                             .contribution_per_sr = 0.000675,
+                                             .share_percent = 45.6},
+                                            {.component = "noise of the sample reading",
+                                             .kind = "random",
+                                             .distribution = "normal",
+                                             .u = std::nullopt,
+                                             .unit = "sr^-1",
+                                             .contribution_per_sr = 0.0007,
+                                             .share_percent = 54.4,
+                                             .degrees_of_freedom = 9.0}}};
   }
   Result<api::ReferenceReport> reference(const std::string& serial) override {
     if (serial != "SRT-1")

@@ -125,7 +125,7 @@ TEST(OpenApi, DescribesTheMembersOfEveryMessage) {
   expect_schema<ScanCheckReport>(document, "ScanCheckReport");
   expect_schema<ScanChecksReport>(document, "ScanChecksReport");
   expect_schema<BudgetTermReport>(document, "BudgetTermReport");
-  expect_schema<BudgetReport>(document, "BudgetReport");
+  expect_schema<PointBudgetReport>(document, "PointBudgetReport");
   expect_schema<NoWords>(document, "NoWords");
   expect_schema<AnalysisRequest>(document, "AnalysisRequest");
   expect_schema<AnalysisReport>(document, "AnalysisReport");
