@@ -17,8 +17,8 @@ class Measurement {
 
   /// Frames of a target until the plan's signal-to-noise is reached: a probe if nothing is known, a lower rung after
   /// saturation. Where the plan states exposures: one frame of each, the shortest first, up to the first that saturates
-  /// (no frame of that rung counts), then more of the longest that does not. A list that comes down again is gone through
-  /// once, without what saturates.
+  /// (no frame of that rung counts), then more of the longest that does not. A list that comes down again is gone
+  /// through once, without what saturates.
   [[nodiscard]] static Measurement of_item(const ExposureChooser& chooser, calibration::Target target, int filter);
   /// `frames` of each rung from `lowest` to `highest`.
   [[nodiscard]] static Measurement of_dark(std::size_t lowest, std::size_t highest, int frames);

@@ -363,8 +363,8 @@ CREATE TABLE plan_part(
 ALTER TABLE point ADD COLUMN repeat INTEGER NOT NULL DEFAULT 1;
 )sql";
 
-// Version 9: what calibration jobs found, each a version for good; which of them counts, as a history; and by which ones
-// a BRDF was computed (numbers separated by blanks, empty: by instrument.toml alone).
+// Version 9: what calibration jobs found, each a version for good; which of them counts, as a history; and by which
+// ones a BRDF was computed (numbers separated by blanks, empty: by instrument.toml alone).
 constexpr const char* kVersion9 = R"sql(
 CREATE TABLE found_calibration(
   version INTEGER PRIMARY KEY AUTOINCREMENT,

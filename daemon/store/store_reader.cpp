@@ -406,7 +406,8 @@ class SqliteStoreReader final : public StoreReader {
   BrdfInfo read_brdf(ScanId id) {
     BrdfInfo info;
     Statement& newest = database_->statement(
-        "SELECT calibration_id, code_version, inputs_json, component_names_json, versions FROM calibration WHERE scan_id = ? "
+        "SELECT calibration_id, code_version, inputs_json, component_names_json, versions FROM calibration WHERE "
+        "scan_id = ? "
         "ORDER BY calibration_id DESC LIMIT 1");
     newest.bind(id);
     while (newest.next()) {

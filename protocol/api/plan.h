@@ -65,7 +65,7 @@ struct Plan {
   OnItemError on_item_error = OnItemError::Skip;
   OnRestart on_restart = OnRestart::Resume;
   std::optional<PlanCalibration> calibration;  ///< the job that this scan is measured for
-  std::optional<PlanBudget> budget;  ///< none: everything is measured
+  std::optional<PlanBudget> budget;            ///< none: everything is measured
 };
 
 /// Errors: InvalidInput, UnknownKey, MissingKey, with file, line, field and nearest name. `file` is the user's name for

@@ -39,8 +39,8 @@ TEST(TapeInput, KeepsARangeAndLeavesOpenWhatWasLeftOpen) {
 TEST(TapeInput, KeepsWhatCountsAsCalibrationAndWhatIsComputedAnew) {
   const auto use = std::get<UseCalibration>(
       std::get<Command>(there_and_back(UseCalibration{.version = 5, .in_use = false, .reason = "bent"})).verb);
-  const auto with = std::get<RecomputeScan>(
-      std::get<Command>(there_and_back(RecomputeScan{.scan = 3, .versions = {{5, 7}}})).verb);
+  const auto with =
+      std::get<RecomputeScan>(std::get<Command>(there_and_back(RecomputeScan{.scan = 3, .versions = {{5, 7}}})).verb);
   const auto open = std::get<RecomputeScan>(std::get<Command>(there_and_back(RecomputeScan{.scan = 3})).verb);
 
   EXPECT_EQ(use.version, 5);
