@@ -69,9 +69,10 @@ void RecordWriter::operator()(const NewScan& scan) {
       "configuration_hash, plan_text, plan_file, plan_sha256, planner_version, target_snr, max_time_ns, exposures_ns, "
       "block_ns, "
       "dark_every_ns, item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, drift_limit, "
-      "drift_rounds, asked, merged, blocked, items, state, finish_asked, "
+      "drift_rounds, reference_mode, anchor_theta_i_deg, anchor_theta_r_deg, anchor_phi_r_deg, asked, merged, blocked, "
+      "items, state, finish_asked, "
       "outcome, who, run_id, submitted_utc_ns, submitted_boottime_ns, changed_utc_ns) "
-      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
+      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
   scan.idempotency_key.empty() ? insert.bind_null() : insert.bind(scan.idempotency_key);
   insert.bind(scan.name);
   campaign == 0 ? insert.bind_null() : insert.bind(campaign);
@@ -84,6 +85,9 @@ void RecordWriter::operator()(const NewScan& scan) {
   insert.bind(kOnRestartNames[static_cast<std::size_t>(scan.policy.on_restart)]);
   insert.bind(scan.policy.reference_every.count()).bind(scan.policy.check_every.count());
   insert.bind(scan.policy.drift_limit).bind(scan.policy.drift_rounds);
+  insert.bind(kReferenceModeNames[static_cast<std::size_t>(scan.policy.reference_mode)]);
+  insert.bind(in_degrees(scan.policy.anchor.theta_i)).bind(in_degrees(scan.policy.anchor.theta_r));
+  insert.bind(in_degrees(scan.policy.anchor.phi_r));
   insert.bind(scan.planned.asked).bind(scan.planned.merged).bind(scan.planned.blocked).bind(scan.planned.items);
   insert.bind(scan.who).bind(time_.run).bind(time_.utc_ns).bind(time_.boottime_ns).bind(time_.utc_ns).run();
   new_scan_ = database_.last_id();

@@ -62,7 +62,9 @@ ScanPolicy policy_of(const api::Plan& plan) {
                     .reference_every = plan.reference_every,
                     .check_every = plan.check_every,
                     .drift_limit = plan.drift_limit,
-                    .drift_rounds = plan.drift_rounds};
+                    .drift_rounds = plan.drift_rounds,
+                    .reference_mode = plan.reference_mode,
+                    .anchor = plan.anchor};
 }
 
 ScanPolicy policy_of(const api::Plan& plan, const PlannedScan& planned) {

@@ -116,6 +116,8 @@ struct ScanPolicy {
   Duration check_every{};      ///< likewise
   double drift_limit = 0.005;  ///< relative, between two visits
   int drift_rounds = 2;        ///< how often a point is measured again for it
+  api::ReferenceMode reference_mode = api::ReferenceMode::SameGeometry;
+  Geometry anchor{.theta_i = {}, .phi_i = {}, .theta_r = degrees(45.0), .phi_r = {}};  ///< in anchor mode
   friend bool operator==(const ScanPolicy&, const ScanPolicy&) = default;
 };
 [[nodiscard]] ScanPolicy policy_of(const api::Plan& plan);

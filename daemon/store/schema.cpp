@@ -413,8 +413,16 @@ CREATE TABLE prediction(
 ) STRICT;
 )sql";
 
+// Version 11: what sample readings are compared with. The anchor counts in its mode only.
+constexpr const char* kVersion11 = R"sql(
+ALTER TABLE scan ADD COLUMN reference_mode TEXT NOT NULL DEFAULT 'same-geometry';
+ALTER TABLE scan ADD COLUMN anchor_theta_i_deg REAL NOT NULL DEFAULT 0.0;
+ALTER TABLE scan ADD COLUMN anchor_theta_r_deg REAL NOT NULL DEFAULT 45.0;
+ALTER TABLE scan ADD COLUMN anchor_phi_r_deg REAL NOT NULL DEFAULT 0.0;
+)sql";
+
 constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5,
-                                                              kVersion6, kVersion7, kVersion8, kVersion9, kVersion10};
+                                                              kVersion6, kVersion7, kVersion8, kVersion9, kVersion10, kVersion11};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

@@ -6,7 +6,7 @@
 namespace gonio::daemon {
 
 /// What this program writes: PRAGMA user_version.
-inline constexpr int kSchemaVersion = 10;
+inline constexpr int kSchemaVersion = 11;
 
 /// Brings the file to kSchemaVersion, forward only, each step in its own transaction. Errors: StoreTooNew, StoreFailed,
 /// DiskFull.

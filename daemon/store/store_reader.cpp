@@ -202,6 +202,7 @@ class SqliteStoreReader final : public StoreReader {
       const ScanInfo info = read_scan(id);
       if (info.id == 0) return std::pair(false, std::move(all));
       all.isotropic = info.isotropic;
+      all.reference_mode = static_cast<calibration::ReferenceMode>(info.policy.reference_mode);  // the same order
       if (info.policy.reference_every > Duration::zero()) all.drift_limit = info.policy.drift_limit;
       for (const ScanPoint& point : read_points(*database_, id, -1, std::numeric_limits<std::int64_t>::max())) {
         all.points.push_back({.index = point.index, .geometry = point.geometry, .wavelength = point.wavelength});
@@ -286,7 +287,8 @@ class SqliteStoreReader final : public StoreReader {
                 "SELECT s.scan_id, s.name, coalesce(c.name, ''), p.name, isotropic, state, outcome, who, serial, "
                 "configuration_hash, submitted_utc_ns, changed_utc_ns, merged, blocked, items, target_snr, "
                 "max_time_ns, exposures_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart, "
-                "reference_every_ns, check_every_ns, drift_limit, drift_rounds FROM scan "
+                "reference_every_ns, check_every_ns, drift_limit, drift_rounds, reference_mode, anchor_theta_i_deg, "
+                "anchor_theta_r_deg, anchor_phi_r_deg FROM scan "
                 "s "
                 "JOIN sample p USING (sample_id) JOIN reference_standard USING (reference_id) "
                 "LEFT JOIN campaign c USING (campaign_id) WHERE s.scan_id = ?")

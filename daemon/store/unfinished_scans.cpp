@@ -143,7 +143,12 @@ ScanPolicy policy_from_row(const Statement& row, int first) {
                     .reference_every = Duration(row.integer(first + 8)),
                     .check_every = Duration(row.integer(first + 9)),
                     .drift_limit = row.real(first + 10),
-                    .drift_rounds = static_cast<int>(row.integer(first + 11))};
+                    .drift_rounds = static_cast<int>(row.integer(first + 11)),
+                    .reference_mode = enum_at<api::ReferenceMode>(kReferenceModeNames, row.text(first + 12)),
+                    .anchor = {.theta_i = degrees(row.real(first + 13)),
+                               .phi_i = {},
+                               .theta_r = degrees(row.real(first + 14)),
+                               .phi_r = degrees(row.real(first + 15))}};
 }
 
 std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t after, std::int64_t at_most) {
@@ -242,7 +247,7 @@ std::vector<UnfinishedScan> read_unfinished(Database& database, Instant now, Utc
       "SELECT scan_id, state, finish_asked, name, isotropic, configuration_hash, merged, target_snr, max_time_ns, "
       "exposures_ns, "
       "block_ns, dark_every_ns, item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, "
-      "drift_limit, drift_rounds FROM scan "
+      "drift_limit, drift_rounds, reference_mode, anchor_theta_i_deg, anchor_theta_r_deg, anchor_phi_r_deg FROM scan "
       "WHERE state NOT IN ('done', 'finished-early', 'aborted', 'failed') ORDER BY scan_id");
   while (query.next()) {
     scans.push_back(UnfinishedScan{.id = query.integer(0),

@@ -24,7 +24,8 @@ namespace gonio::daemon {
 /// The largest relative change between two lit visits of one kind; 0 without.
 [[nodiscard]] double read_largest_drift(Database& database, ScanId scan);
 /// The policy in columns `first` and after: target_snr, max_time_ns, exposures_ns, block_ns, dark_every_ns,
-/// item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, drift_limit, drift_rounds.
+/// item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, drift_limit, drift_rounds,
+/// reference_mode, anchor_theta_i_deg, anchor_theta_r_deg, anchor_phi_r_deg.
 [[nodiscard]] ScanPolicy policy_from_row(const Statement& row, int first);
 
 }  // namespace gonio::daemon

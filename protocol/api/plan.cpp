@@ -50,24 +50,40 @@ void read_reading(TomlReader& root, Plan& plan) {
   plan.exposures = read_exposures(*table, plan.max_time);
 }
 
+void read_anchor(TomlReader& reference, Plan& plan) {
+  constexpr NumberRange kTheta{.least = 0.0, .most = 89.0, .unit = "deg"};
+  constexpr NumberRange kPhi{.least = -360.0, .most = 360.0, .unit = "deg"};
+  std::optional<TomlReader> anchor = reference.optional_table("anchor");
+  if (!anchor) return;
+  if (plan.reference_mode != ReferenceMode::Anchor) {
+    return reference.fail("anchor", ErrorCode::InvalidInput, "it stands beside another mode", "mode = \"anchor\"");
+  }
+  plan.anchor.theta_i = degrees(anchor->number("theta_i_deg", kTheta));
+  plan.anchor.theta_r = degrees(anchor->number("theta_r_deg", kTheta));
+  plan.anchor.phi_r = degrees(anchor->number_or("phi_r_deg", 0.0, kPhi));
+}
+
 void read_reference(TomlReader table, Plan& plan) {
-  constexpr std::array<std::string_view, 1> kModes{"same-geometry"};
+  constexpr std::array<std::string_view, 3> kModes{"same-geometry", "anchor", "absolute"};  // as ReferenceMode
   constexpr double kBlock = 900.0;
   plan.reference_standard = table.text("standard");
   plan.reference_mode = static_cast<ReferenceMode>(table.choice_or("mode", 0, kModes));
   plan.block = seconds(table.number_or("block_s", kBlock, kWait));
+  read_anchor(table, plan);
 }
 
 void read_visits(TomlReader& root, Plan& plan) {
   constexpr double kDark = 300.0;
   plan.dark_every = seconds(kDark);
+  // The standard is read before, about every block and after: without such visits there is no BRDF.
+  if (plan.reference_mode == ReferenceMode::Anchor) plan.reference_every = plan.block;
   std::optional<TomlReader> table = root.optional_table("visits");
   if (!table) return;
   plan.dark_every = seconds(table->number_or("dark_s", kDark, kWait));
   const auto wanted = [&table](std::string_view key) {
     return table->kind(key) == TomlKind::Absent ? Duration{} : seconds(table->number(key, kWait));
   };
-  plan.reference_every = wanted("reference_s");
+  if (table->kind("reference_s") != TomlKind::Absent) plan.reference_every = wanted("reference_s");
   plan.check_every = wanted("check_s");
   plan.drift_limit = table->number_or("drift_limit", plan.drift_limit, {.least = 1e-5, .most = 1.0});
   plan.drift_rounds = static_cast<int>(table->integer_or("drift_rounds", plan.drift_rounds, 0, 10));

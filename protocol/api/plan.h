@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/geometry.h"
 #include "base/result.h"
 #include "base/units.h"
 #include "protocol/api/plan_calibration.h"
@@ -17,7 +18,12 @@ namespace gonio::api {
 enum class OrderStrategy : std::uint8_t { Fastest, AsWritten, Random };
 enum class OnItemError : std::uint8_t { Skip, Hold, Fail };
 enum class OnRestart : std::uint8_t { Resume, Hold };
-enum class ReferenceMode : std::uint8_t { SameGeometry };
+/// What a sample's reading is compared with (calibration/raw_reading.h).
+enum class ReferenceMode : std::uint8_t {
+  SameGeometry,  ///< the standard at the same directions
+  Anchor,        ///< the standard at one geometry
+  Absolute,      ///< the direct beam, as a calibration has measured it
+};
 
 /// [budget]: what a scan may take at most. The planner chooses how to use it best.
 struct PlanBudget {
@@ -53,9 +59,11 @@ struct Plan {
   std::vector<Duration> exposures;
   std::string reference_standard;  ///< serial number
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
+  /// Where the standard is read in anchor mode; phi_i is 0. A point of the scan: added where the plan has it not.
+  Geometry anchor{.theta_i = {}, .phi_i = {}, .theta_r = degrees(45.0), .phi_r = {}};
   Duration block{};            ///< sample items and their reference partners lie within this time
   Duration dark_every{};       ///< visits
-  Duration reference_every{};  ///< visits of the standard at one geometry; zero: none
+  Duration reference_every{};  ///< visits of the standard at one geometry; zero: none. In anchor mode never none
   Duration check_every{};      ///< of the sample likewise
   double drift_limit = 0.005;  ///< relative, between two visits: beyond it the points between are measured again
   int drift_rounds = 2;        ///< how often at most

@@ -91,6 +91,28 @@ TEST(Plan, VisitsOfStandardAndSampleAreMadeOnlyWhereItAsksForThem) {
   EXPECT_EQ(error_of(with("dark_s = 300", "drift_limit = 0")).code, ErrorCode::InvalidInput);
 }
 
+TEST(Plan, HasAnAnchorAndVisitsOfItInItsModeOnly) {
+  const std::string mode = "mode = \"same-geometry\"";
+  const Result<Plan> same = parse_plan(kWheat, "p");
+  const Result<Plan> plain = parse_plan(with(mode, "mode = \"anchor\""), "p");
+  const Result<Plan> named =
+      parse_plan(with(mode, "mode = \"anchor\"\nanchor = {theta_i_deg = 8, theta_r_deg = 30, phi_r_deg = 90}"), "p");
+  const Result<Plan> absolute = parse_plan(with(mode, "mode = \"absolute\""), "p");
+
+  ASSERT_TRUE(same && plain && named && absolute);
+  EXPECT_EQ(same->reference_mode, ReferenceMode::SameGeometry);
+  EXPECT_EQ(plain->reference_mode, ReferenceMode::Anchor);
+  EXPECT_EQ(plain->anchor.theta_i, 0_deg);
+  EXPECT_EQ(plain->anchor.theta_r, 45_deg);
+  EXPECT_EQ(plain->reference_every, plain->block) << "without visits there is no BRDF";
+  EXPECT_EQ(named->anchor.theta_i, 8_deg);
+  EXPECT_EQ(named->anchor.phi_r, 90_deg);
+  EXPECT_EQ(absolute->reference_mode, ReferenceMode::Absolute);
+  EXPECT_EQ(absolute->reference_every, Duration{});
+  EXPECT_EQ(error_of(with(mode, mode + "\nanchor = {theta_i_deg = 0, theta_r_deg = 45}")).where->field,
+            "reference.anchor");
+}
+
 TEST(Plan, StepsReachTheirLastValueWithoutCreep) {
   const Result<Plan> plan = parse_plan(with("{from = 0, to = 75, step = 5}", "{from = 0, to = 1, step = 0.1}"), "p");
 
