@@ -37,12 +37,12 @@ std::string fact_value(const api::AnalysisFact& fact) {
 }
 
 // Why a point has no value.
-std::string gap_reason(const PointInfo& info) {
+std::string gap_reason(const PointInfo& info, api::ReferenceMode mode) {
   if (info.point.blocked) return "in the detector's shadow";
   if (info.sample_outcome == "skipped") return "sample skipped";
   if (info.reference_outcome == "skipped") return "standard skipped";
   if (info.sample_outcome.empty()) return "sample not measured";
-  if (info.reference_outcome.empty()) return "standard not measured";
+  if (info.reference_outcome.empty() && mode == api::ReferenceMode::SameGeometry) return "standard not measured";
   return "refused by the calibration";
 }
 
@@ -172,7 +172,7 @@ std::string gaps_section(const ReportParts& parts) {
   Rows rows;
   for (std::size_t k = 0; k < std::min(kGapsShown, gaps.size()); ++k) {
     rows.push_back({trace_command(parts.scan, gaps[k]->point.index), geometry_cell(gaps[k]->point.geometry),
-                    gap_reason(*gaps[k]), std::to_string(gaps[k]->attempts)});
+                    gap_reason(*gaps[k], parts.scan.info.policy.reference_mode), std::to_string(gaps[k]->attempts)});
   }
   std::string html = fmt::format("<h2>Gaps</h2>\n<p>{} of {} points have no value; none is filled in.</p>\n",
                                  gaps.size(), parts.scan.points.size());

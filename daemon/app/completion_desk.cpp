@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "daemon/app/plan_desk.h"
+#include "daemon/planner/anchor.h"
 #include "daemon/planner/planner.h"
 #include "daemon/sequencer/scan_machine.h"
 
@@ -25,18 +27,29 @@ Result<void> check_not_completed(StoreReader& store, const ScanInfo& info) {
       refused(info, fmt::format("scan {} completes it: what that one lacks is its own to complete", other->id)));
 }
 
-bool is_missing(const PointInfo& info) {
-  return !info.point.blocked && (info.sample_outcome != "accepted" || info.reference_outcome != "accepted");
+bool is_missing(const PointInfo& info, api::ReferenceMode mode) {
+  const bool needs_reference = mode == api::ReferenceMode::SameGeometry;
+  return !info.point.blocked &&
+         (info.sample_outcome != "accepted" || (needs_reference && info.reference_outcome != "accepted"));
+}
+
+// Where the standard is visited: in the new scan too, whatever it lacks.
+bool is_anchor(const ScanPoint& point, const ScanPolicy& policy) {
+  return policy.reference_mode == api::ReferenceMode::Anchor && !point.blocked && point.repeat == 1 &&
+         is_at_anchor(point.geometry, policy.anchor);
 }
 
 // In the order of measurement of the first scan, with indices and ranks of their own.
-Result<PlannedScan> missing_points(StoreReader& store, ScanId scan) {
-  const auto all = store.points(scan, -1, std::numeric_limits<int>::max());
+Result<PlannedScan> missing_points(StoreReader& store, const ScanInfo& scan) {
+  const auto all = store.points(scan.id, -1, std::numeric_limits<int>::max());
   if (!all) return failure(all.error());
   PlannedScan planned{.planner_version = kPlannerVersion};
   std::vector<std::int32_t> rank_then;
+  const ScanPolicy& policy = scan.policy;
+  const bool lacks_any = std::any_of(all->begin(), all->end(),
+                                     [&](const PointInfo& info) { return is_missing(info, policy.reference_mode); });
   for (const PointInfo& info : *all) {
-    if (!is_missing(info)) continue;
+    if (!is_missing(info, policy.reference_mode) && !(lacks_any && is_anchor(info.point, policy))) continue;
     rank_then.push_back(info.point.rank);
     planned.order.push_back(static_cast<std::int32_t>(planned.points.size()));
     planned.points.push_back(info.point);
@@ -49,18 +62,16 @@ Result<PlannedScan> missing_points(StoreReader& store, ScanId scan) {
     planned.points[static_cast<std::size_t>(planned.order[rank])].rank = static_cast<std::int32_t>(rank);
   }
   planned.asked = std::ssize(planned.points);
-  planned.items = 2 * planned.asked;
+  planned.items = items_of(planned.asked, policy.reference_mode);
   return planned;
 }
 
 Result<ShelfEntry> standard_in_reach(const ReferenceShelf& shelf, const std::string& serial,
-                                     const std::vector<ScanPoint>& points, UtcTime today) {
+                                     const std::vector<ScanPoint>& points, const ScanPolicy& policy, UtcTime today) {
   Result<ShelfEntry> reference = shelf.find(serial);
   if (!reference) return failure(reference.error());
   GONIO_TRY(reference->standard->check_date(today));
-  for (const ScanPoint& point : points) {
-    GONIO_TRY(reference->standard->check_reach(point.wavelength, point.geometry));
-  }
+  GONIO_TRY(check_standard_reaches(points, policy.reference_mode, policy.anchor, *reference->standard));
   return reference;
 }
 
@@ -95,12 +106,12 @@ Result<NewScan> completion_of(StoreReader& store, ScanId scan, const Instrument&
                                               "anew",
                                               info->instrument_hash, instrument.sha256)));
   }
-  Result<PlannedScan> planned = missing_points(store, scan);
+  Result<PlannedScan> planned = missing_points(store, *info);
   if (!planned) return failure(planned.error());
   if (planned->points.empty()) return failure(refused(*info, "no point is missing"));
   Result<ScanTexts> texts = store.texts(scan);
   if (!texts) return failure(texts.error());
-  Result<ShelfEntry> reference = standard_in_reach(shelf, info->reference_serial, planned->points, today);
+  Result<ShelfEntry> reference = standard_in_reach(shelf, info->reference_serial, planned->points, info->policy, today);
   if (!reference) return failure(reference.error());
   NewScan completing = in_the_name_of(*info, std::move(*texts), instrument);
   completing.reference_text = std::move(reference->text);

@@ -1,5 +1,6 @@
 #include "daemon/app/plan_desk.h"
 
+#include "daemon/planner/anchor.h"
 #include "daemon/planner/planner.h"
 
 namespace gonio::daemon {
@@ -11,6 +12,16 @@ Error at_the_plans_standard(Error error, const std::string& file) {
 }
 
 }  // namespace
+
+Result<void> check_standard_reaches(const std::vector<ScanPoint>& points, api::ReferenceMode mode,
+                                    const Geometry& anchor, const calibration::ReferenceStandard& standard) {
+  if (mode == api::ReferenceMode::Absolute) return {};
+  for (const ScanPoint& point : points) {
+    if (point.blocked || (mode == api::ReferenceMode::Anchor && !is_at_anchor(point.geometry, anchor))) continue;
+    GONIO_TRY(standard.check_reach(point.wavelength, point.geometry));
+  }
+  return {};
+}
 
 Result<CheckedPlan> check_plan(const api::PlanSubmission& submission, const Instrument& instrument,
                                const ReferenceShelf& shelf, UtcTime today, const TimeExperience& experience) {
@@ -26,9 +37,7 @@ Result<CheckedPlan> check_plan(const api::PlanSubmission& submission, const Inst
   Result<ShelfEntry> reference = shelf.find(plan->reference_standard);
   if (!reference) return failure(at_the_plans_standard(reference.error(), file));
   GONIO_TRY(reference->standard->check_date(today));
-  for (const ScanPoint& point : planned->points) {
-    if (!point.blocked) GONIO_TRY(reference->standard->check_reach(point.wavelength, point.geometry));
-  }
+  GONIO_TRY(check_standard_reaches(planned->points, plan->reference_mode, plan->anchor, *reference->standard));
   return CheckedPlan{std::move(*plan), std::move(*planned), std::move(*reference)};
 }
 

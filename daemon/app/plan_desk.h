@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/app/reference_shelf.h"
@@ -16,6 +18,12 @@ struct CheckedPlan {
   PlannedScan planned;
   ShelfEntry reference;
 };
+
+/// Whether the standard reaches what it is read at: every point that is not blocked, the anchor alone, or nothing. Errors:
+/// ReferenceOutOfReach.
+[[nodiscard]] Result<void> check_standard_reaches(const std::vector<ScanPoint>& points, api::ReferenceMode mode,
+                                                  const Geometry& anchor,
+                                                  const calibration::ReferenceStandard& standard);
 
 /// The one check of plans, for the dry run and for the run. Errors: those of parse_plan, expand and the reference
 /// shelf; ReferenceExpired, ReferenceOutOfReach.

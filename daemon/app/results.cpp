@@ -10,6 +10,7 @@
 #include "calibration/point_flags.h"
 #include "daemon/app/calibration_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/store/policy_names.h"
 #include "daemon/store/version_list.h"
 
 namespace gonio::daemon {
@@ -25,11 +26,12 @@ void set_geometry(api::BrdfReport& report, const Geometry& g) {
   report.phi_r_deg = in_degrees(g.phi_r);
 }
 
-std::string status_without_value(const PointInfo& info) {
+std::string status_without_value(const PointInfo& info, api::ReferenceMode mode) {
   if (info.point.blocked) return "blocked";
   if (info.sample_outcome == "skipped" || info.reference_outcome == "skipped") return "skipped";
-  const bool both = info.sample_outcome == "accepted" && info.reference_outcome == "accepted";
-  return both ? "refused" : "unmeasured";
+  const bool needs_reference = mode == api::ReferenceMode::SameGeometry;
+  const bool all = info.sample_outcome == "accepted" && (!needs_reference || info.reference_outcome == "accepted");
+  return all ? "refused" : "unmeasured";
 }
 
 double own_u(const BrdfRow& row, const std::vector<std::string>& component_names) {
@@ -43,13 +45,14 @@ double own_u(const BrdfRow& row, const std::vector<std::string>& component_names
   return std::sqrt(variance);
 }
 
-api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row, const std::vector<std::string>& component_names) {
+api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row, const std::vector<std::string>& component_names,
+                          api::ReferenceMode mode) {
   api::BrdfReport report;
   report.point = info.point.index;
   report.wavelength_nm = in_nanometres(info.point.wavelength);
   set_geometry(report, row == nullptr ? info.point.geometry : row->reported);
   if (row == nullptr) {
-    report.status = status_without_value(info);
+    report.status = status_without_value(info, mode);
     return report;
   }
   const StoredBudget budget = budget_of(*row);
@@ -76,13 +79,13 @@ Result<std::vector<PointInfo>> all_points(StoreReader& reader, ScanId scan) {
   }
 }
 
-std::vector<api::BrdfReport> join(const std::vector<PointInfo>& points, const BrdfInfo& brdf) {
+std::vector<api::BrdfReport> join(const std::vector<PointInfo>& points, const BrdfInfo& brdf, api::ReferenceMode mode) {
   std::map<std::int32_t, const BrdfRow*> rows;
   for (const BrdfRow& row : brdf.rows) rows[row.point] = &row;
   std::vector<api::BrdfReport> reports;
   for (const PointInfo& point : points) {
     const auto row = rows.find(point.point.index);
-    reports.push_back(report_of(point, row == rows.end() ? nullptr : row->second, brdf.component_names));
+    reports.push_back(report_of(point, row == rows.end() ? nullptr : row->second, brdf.component_names, mode));
   }
   return reports;
 }
@@ -120,7 +123,7 @@ std::string metadata(const ScanInfo& info, const ScanTexts& texts, const BrdfInf
   add("instrument_sha256", info.instrument_hash);
   add("reference", info.reference_serial);
   add("reference_sha256", texts.reference_sha256);
-  add("reference_mode", "same-geometry");
+  add("reference_mode", std::string(kReferenceModeNames[static_cast<std::size_t>(info.policy.reference_mode)]));
   add("calibration", brdf.code_version + ", " + brdf.inputs_json);
   add("calibration_versions",
       brdf.versions.empty() ? "none: by instrument.toml alone" : version_list_text(brdf.versions));
@@ -140,11 +143,13 @@ std::string metadata(const ScanInfo& info, const ScanTexts& texts, const BrdfInf
 }  // namespace
 
 Result<std::vector<api::BrdfReport>> results_of(StoreReader& reader, ScanId scan) {
+  const Result<ScanInfo> info = reader.scan(scan);
+  if (!info) return failure(info.error());
   const Result<BrdfInfo> brdf = brdf_of(reader, scan);
   if (!brdf) return failure(brdf.error());
   const Result<std::vector<PointInfo>> points = all_points(reader, scan);
   if (!points) return failure(points.error());
-  return join(*points, *brdf);
+  return join(*points, *brdf, info->policy.reference_mode);
 }
 
 Result<std::string> export_csv(StoreReader& reader, ScanId scan, const std::string& software) {
@@ -160,7 +165,7 @@ Result<std::string> export_csv(StoreReader& reader, ScanId scan, const std::stri
   text +=
       "point,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,wavelength_nm,brdf_per_sr,u_random_per_sr,u_shared_per_sr,"
       "u_per_sr,k,expanded_u_per_sr,status,flags\n";
-  for (const api::BrdfReport& report : join(*points, *brdf)) text += csv_row(report);
+  for (const api::BrdfReport& report : join(*points, *brdf, info->policy.reference_mode)) text += csv_row(report);
   return text;
 }
 

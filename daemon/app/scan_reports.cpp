@@ -19,9 +19,9 @@ api::TimeSplit divided(const api::TimeSplit& split, double n) {
                       .planning_s = idle.planning_s / n}};
 }
 
-// A point is measured when sample and reference are: two items.
-api::TimeSplit seconds_a_point(const api::TimeSplit& spent, std::int64_t accepted) {
-  const double points = 0.5 * static_cast<double>(accepted);
+// A point is measured when all of its items are.
+api::TimeSplit seconds_a_point(const api::TimeSplit& spent, std::int64_t accepted, api::ReferenceMode mode) {
+  const double points = static_cast<double>(accepted) / static_cast<double>(items_of(1, mode));
   return points < 1.0 ? api::TimeSplit{} : divided(spent, points);
 }
 
@@ -83,7 +83,7 @@ api::ScanReport scan_report(const ScanInfo& info, Instant now) {
   report.measured_again = info.counts.reopened;
   report.largest_drift = info.largest_drift;
   report.spent = time_split(info.spent);
-  report.seconds_a_point = seconds_a_point(report.spent, report.accepted);
+  report.seconds_a_point = seconds_a_point(report.spent, report.accepted, info.policy.reference_mode);
   report.holds = hold_reports(info.holds, now);
   report.priority = info.turn.priority;
   report.preempts = info.turn.preempts;

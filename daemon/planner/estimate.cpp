@@ -175,6 +175,13 @@ Result<TimeParts> estimate(const api::Plan& plan, const Instrument& instrument, 
                            std::span<const std::int32_t> order, const TimeExperience& experience) {
   Walk walk(plan, instrument, points, experience);
   GONIO_TRY(walk.begin());
+  if (plan.reference_mode != api::ReferenceMode::SameGeometry) {  // the standard is visited, or not needed
+    for (const std::int32_t index : order) {
+      GONIO_TRY(walk.measure(points[static_cast<std::size_t>(index)], Target::Sample));
+    }
+    GONIO_TRY(walk.end());
+    return walk.time();
+  }
   const Duration pass = plan.block / 2;  // there and back: partners lie within the whole block
   for (std::size_t first = 0; first < order.size();) {
     const Duration started = walk.time().total();

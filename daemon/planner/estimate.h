@@ -10,7 +10,8 @@
 
 namespace gonio::daemon {
 
-/// The time of a scan of `points` (by index) in this order, all visits included, by the instrument's own speeds and
+/// The time of a scan of `points` (by index) in this order, by the plan's mode with the way back on the reference or
+/// without it, all visits included, by the instrument's own speeds and
 /// what past scans took beside them; light by `LightForecast`. Every direction must be within the axes' limits
 /// (asserted). Detours and turning points count. In `read` stands what an item takes beyond motion and light. Errors:
 /// Blocked (a point that the arms cannot come to from the one before, with the place on the path).

@@ -9,6 +9,7 @@
 #include "base/geometry.h"
 #include "base/units.h"
 #include "daemon/planner/time_experience.h"
+#include "protocol/api/plan.h"
 
 namespace gonio::daemon {
 
@@ -22,6 +23,11 @@ struct ScanPoint {
   bool blocked = false;  ///< by the shadow of the detector's head: recorded, never visited, never filled in
   int repeat = 1;        ///< which of the times that the plan asks for this point
 };
+
+/// How many items so many points have: sample and reference, or the sample alone where the standard is read elsewhere.
+[[nodiscard]] constexpr std::int64_t items_of(std::int64_t points, api::ReferenceMode mode) {
+  return mode == api::ReferenceMode::SameGeometry ? 2 * points : points;
+}
 
 /// Time in which nothing moved, settled, took light or gave a frame, by what it waited for.
 struct IdleTime {
@@ -73,7 +79,8 @@ struct PlannedScan {
   std::int64_t out_of_reach = 0;              ///< of cones, beyond the axes' limits: left out
   std::vector<std::int32_t> without_partner;  ///< of reciprocal pairs: points whose partner the arms do not reach
   std::int64_t blocked = 0;
-  std::int64_t items = 0;              ///< sample and reference, of the points that are not blocked
+  std::int64_t items = 0;              ///< of the points that are not blocked: items_of
+  std::int64_t anchors = 0;            ///< of the points, those added because the standard is visited there
   TimeParts estimate;                  ///< visits included
   double u_estimate_s = 0.0;           ///< standard uncertainty of it
   TimeExperience experience;           ///< what the estimate rests on

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "daemon/planner/anchor.h"
 #include "daemon/planner/budget_choice.h"
 #include "daemon/planner/direction_index.h"
 #include "daemon/planner/estimate.h"
@@ -43,6 +44,7 @@ class Expansion {
       GONIO_TRY(take(part));
     }
     if (plan_.is_reciprocal) GONIO_TRY(add_partners());
+    if (plan_.reference_mode == api::ReferenceMode::Anchor) GONIO_TRY(add_anchors());
     GONIO_TRY(check_count());
     if (plan_.budget && !are_all_blocked()) return within_budget();
     repeat(repeats_);
@@ -170,6 +172,37 @@ class Expansion {
 
   [[nodiscard]] bool are_all_blocked() const { return std::ranges::all_of(planned_.points, &ScanPoint::blocked); }
 
+  // The standard is visited at a point of the scan, so that its way and its limits are those of points: the sample is
+  // measured there too.
+  Result<void> add_anchors() {
+    const std::vector<ScanPoint> asked = planned_.points;
+    std::vector<Wavelength> done;
+    for (const ScanPoint& point : asked) {
+      if (std::find(done.begin(), done.end(), point.wavelength) != done.end()) continue;
+      done.push_back(point.wavelength);
+      const bool is_there = std::any_of(asked.begin(), asked.end(), [&](const ScanPoint& other) {
+        return other.wavelength == point.wavelength && is_at_anchor(other.geometry, plan_.anchor);
+      });
+      const auto anchor = reached(plan_.anchor, point.wavelength, {{.field = "reference.anchor"}});
+      if (!anchor) return failure(anchor.error());
+      if (anchor->blocked) return failure(blocked_anchor());
+      if (is_there) continue;
+      add(*anchor, 1);
+      ++planned_.anchors;
+    }
+    return {};
+  }
+
+  [[nodiscard]] Error blocked_anchor() const {
+    return {.code = ErrorCode::Blocked,
+            .device = "plan",
+            .tried = fmt::format("read the standard at the anchor {:g}/{:g} deg", in_degrees(plan_.anchor.theta_i),
+                                 in_degrees(plan_.anchor.theta_r)),
+            .seen = "it lies in the shadow of the detector's head, or the arms would meet",
+            .limit = "a geometry outside of the keep-out about retro-reflection",
+            .where = InputLocation{.field = "reference.anchor"}};
+  }
+
   // Each point as often as it is measured, under an index of its own.
   void repeat(const std::vector<int>& repeats) {
     std::vector<ScanPoint> once = std::exchange(planned_.points, {});
@@ -240,7 +273,7 @@ class Expansion {
                 .where = InputLocation{.field = "geometry"}});
     }
     planned_.planner_version = kPlannerVersion;
-    planned_.items = 2 * (count - planned_.blocked);
+    planned_.items = items_of(count - planned_.blocked, plan.reference_mode);
     auto ordered = measuring_order(plan, instrument_, planned_.points, experience_);
     if (!ordered) return failure(ordered.error());
     planned_.order = std::move(ordered->order);

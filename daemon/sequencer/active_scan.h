@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/planner/anchor.h"
 #include "daemon/planner/estimate.h"
 #include "daemon/planner/exposure_choice.h"
 #include "daemon/sequencer/measurement.h"
@@ -16,6 +17,7 @@
 #include "daemon/sequencer/time_estimate.h"
 #include "daemon/sequencer/time_ledger.h"
 #include "daemon/sequencer/visit_level.h"
+#include "daemon/sequencer/visit_tracks.h"
 #include "daemon/sequencer/way_ahead.h"
 #include "daemon/store/records.h"
 
@@ -49,14 +51,6 @@ struct Job {
   [[nodiscard]] bool is_lit() const { return kind != Kind::Dark && kind != Kind::Park; }
 };
 
-/// Visits of the standard, or of the sample, in a scan that wants them.
-struct VisitTrack {
-  std::optional<VisitLevel> level;  ///< of the last one, of any run
-  std::vector<ItemKey> since;       ///< accepted after it, in force: the next one judges them
-  std::optional<Instant> last;      ///< of this run
-  std::optional<std::size_t> rung;  ///< that the first one of this run chose: all of them expose alike
-};
-
 /// A scan that is not over, with all that the sequencer knows of it. The durable part is the store's; the rest is made
 /// anew at each start.
 struct ActiveScan {
@@ -73,16 +67,18 @@ struct ActiveScan {
         spent(stored.spent),
         turn(stored.turn),
         predicted(stored.predicted),
-        items(points.size(), std::move(stored.order), policy.block, stored.accepted, stored.skipped),
+        items(points.size(), std::move(stored.order), policy.block, stored.accepted, stored.skipped,
+              policy.reference_mode),
         chooser(instrument, {policy.target_snr, policy.max_time, policy.exposures}),
         dark_owed(stored.dark_owed),
-        reference_visits{.level = stored.last_reference.level, .since = std::move(stored.last_reference.since)},
-        check_visits{.level = stored.last_check.level, .since = std::move(stored.last_check.since)},
+        reference_visits(reference_points(stored), stored.last_reference, points),
+        check_visits{.at = reference_visits.due().at,
+                     .level = stored.last_check.level,
+                     .since = std::move(stored.last_check.since),
+                     .last = {},
+                     .rung = {}},
         reopened(stored.reopened.begin(), stored.reopened.end()),
         largest_drift(stored.largest_drift) {
-    visits_at = reference_visits.level ? reference_visits.level->point
-                : check_visits.level   ? check_visits.level->point
-                                       : visit_point(points);
     for (const auto& [item, count] : stored.attempts) failures[item] = count;
     if (predicted && predicted->scans > 0) end_estimate.expect_motion(predicted->motion.value);
     for (const Duration exposure : stored.exposures_used) note_rung_of(exposure);
@@ -90,6 +86,16 @@ struct ActiveScan {
       const Filter* filter = filter_for(instrument, points.front().wavelength);
       meter_wavelength = filter == nullptr ? points.front().wavelength : filter->centroid;
     }
+  }
+
+  // Where the visits of earlier runs were made, else where the mode has them.
+  [[nodiscard]] std::vector<std::int32_t> reference_points(const UnfinishedScan& stored) const {
+    if (policy.reference_mode == api::ReferenceMode::Anchor) {
+      const std::vector<std::int32_t> anchors = anchor_points(points, policy.anchor);
+      if (!anchors.empty()) return anchors;
+    }
+    const auto& level = stored.last_reference.level ? stored.last_reference.level : stored.last_check.level;
+    return {level ? level->point : visit_point(points)};
   }
 
   // The readings of a radiometer all last as long: any of its ranges may have been in use.
@@ -141,8 +147,7 @@ struct ActiveScan {
   std::optional<std::size_t> highest_rung;
   int most_frames = 1;
   int visit_failures = 0;
-  std::int32_t visits_at = 0;  ///< the point of the lit visits
-  VisitTrack reference_visits;
+  ReferenceTracks reference_visits;
   VisitTrack check_visits;
   std::map<std::int32_t, int> reopened;  ///< points, and how often a drift made them be measured again
   double largest_drift;                  ///< between two visits

@@ -10,13 +10,14 @@ namespace gonio::daemon {
 using calibration::Target;
 
 ScanItems::ScanItems(std::size_t points, std::vector<std::int32_t> order, Duration block,
-                     const std::vector<ItemKey>& accepted, const std::vector<ItemKey>& skipped)
+                     const std::vector<ItemKey>& accepted, const std::vector<ItemKey>& skipped, api::ReferenceMode mode)
     : order_(std::move(order)),
       pass_(block / 2),
+      mode_(mode),
       sample_(points, Fate::Open),
-      reference_(points, Fate::Open),
+      reference_(points, mode == api::ReferenceMode::SameGeometry ? Fate::Open : Fate::NotOwed),
       open_samples_(static_cast<std::int64_t>(order_.size())),
-      open_references_(open_samples_) {
+      open_references_(total() - open_samples_) {
   for (const ItemKey& item : accepted) decide(item, Fate::Accepted);
   for (const ItemKey& item : skipped) decide(item, Fate::Skipped);
   for (const std::int32_t point : order_) {
@@ -148,20 +149,22 @@ bool ScanItems::owes_reference() const {
                      [this](std::int32_t point) { return reference_[static_cast<std::size_t>(point)] == Fate::Open; });
 }
 
+bool ScanItems::is_untouched(std::int32_t point) const {
+  const auto p = static_cast<std::size_t>(point);
+  return sample_[p] == Fate::Open && (reference_[p] == Fate::Open || reference_[p] == Fate::NotOwed);
+}
+
 std::vector<std::int32_t> ScanItems::untouched() const {
   std::vector<std::int32_t> points;
-  std::copy_if(order_.begin(), order_.end(), std::back_inserter(points), [this](std::int32_t point) {
-    const auto p = static_cast<std::size_t>(point);
-    return sample_[p] == Fate::Open && reference_[p] == Fate::Open;
-  });
+  std::copy_if(order_.begin(), order_.end(), std::back_inserter(points),
+               [this](std::int32_t point) { return is_untouched(point); });
   return points;
 }
 
 void ScanItems::reorder(const std::vector<std::int32_t>& untouched) {
   auto next = untouched.begin();
   for (std::int32_t& point : order_) {
-    const auto p = static_cast<std::size_t>(point);
-    if (sample_[p] == Fate::Open && reference_[p] == Fate::Open && next != untouched.end()) point = *next++;
+    if (next != untouched.end() && is_untouched(point)) point = *next++;
   }
 }
 

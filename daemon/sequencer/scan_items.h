@@ -11,12 +11,12 @@ namespace gonio::daemon {
 
 /// Which items of a scan are decided, and which is next. Same-geometry mode: sample items for half of `block`, then the
 /// reference at the same geometries, last first, from where the arms stand: so partners lie within `block` of each
-/// other.
+/// other. The other modes have sample items only: the standard is visited, or not needed.
 class ScanItems {
  public:
   /// `order`: the points to be measured, in order. Decisions of earlier runs close their block first.
   ScanItems(std::size_t points, std::vector<std::int32_t> order, Duration block, const std::vector<ItemKey>& accepted,
-            const std::vector<ItemKey>& skipped);
+            const std::vector<ItemKey>& skipped, api::ReferenceMode mode = api::ReferenceMode::SameGeometry);
 
   /// The next item that is not decided; none when all are. The same until it is decided, unless the block's time
   /// passes.
@@ -33,7 +33,7 @@ class ScanItems {
   /// How many references are owed to the block in hand.
   [[nodiscard]] std::size_t owed() const { return block_.size(); }
   [[nodiscard]] bool is_on_reference() const { return on_reference_; }
-  [[nodiscard]] std::int64_t total() const { return 2 * static_cast<std::int64_t>(order_.size()); }
+  [[nodiscard]] std::int64_t total() const { return items_of(static_cast<std::int64_t>(order_.size()), mode_); }
   [[nodiscard]] std::int64_t accepted() const { return accepted_; }
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
   /// A point is to be measured again, sample and reference, so that they are partners within one block: its accepted
@@ -55,14 +55,16 @@ class ScanItems {
   [[nodiscard]] std::int64_t open(calibration::Target target) const;
 
  private:
-  enum class Fate : std::uint8_t { Open, Accepted, Skipped };
+  enum class Fate : std::uint8_t { Open, Accepted, Skipped, NotOwed };
   Fate& fate(const ItemKey& item);
   [[nodiscard]] std::optional<ItemKey> sample_after(std::int32_t point) const;
+  [[nodiscard]] bool is_untouched(std::int32_t point) const;
   void decide(const ItemKey& item, Fate fate);
   void pass_decided();
 
   std::vector<std::int32_t> order_;
   Duration pass_;
+  api::ReferenceMode mode_;
   std::vector<Fate> sample_;
   std::vector<Fate> reference_;
   std::size_t cursor_ = 0;           ///< in order_: all before it are decided as samples

@@ -329,7 +329,7 @@ void Sequencer::Impl::accept_item(Job& job, Instant now) {
   scan->items.accept(job.item, now);
   scan->failures.erase(job.item);
   scan->dark_owed = true;
-  scan->reference_visits.since.push_back(job.item);
+  scan->reference_visits.note(job.item, scan->points);
   scan->check_visits.since.push_back(job.item);
   ++scan->uncommitted;
   const bool is_turn = std::exchange(scan->last_target, job.item.target) != job.item.target;

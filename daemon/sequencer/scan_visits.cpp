@@ -61,12 +61,13 @@ VisitKind kind_of(const Job& job) {
 // ---- which job is next ----
 
 VisitClocks Sequencer::Impl::visit_clocks() const {
-  const auto clock = [](Duration every, const VisitTrack& track) {
-    return VisitClock{.every = every, .last = track.last, .is_owed = !track.since.empty()};
-  };
   return {.dark = {.every = scan->policy.dark_every, .last = scan->last_dark, .is_owed = scan->dark_owed},
-          .reference = clock(scan->policy.reference_every, scan->reference_visits),
-          .check = clock(scan->policy.check_every, scan->check_visits)};
+          .reference = {.every = scan->policy.reference_every,
+                        .last = scan->reference_visits.last(),
+                        .is_owed = scan->reference_visits.is_owed()},
+          .check = {.every = scan->policy.check_every,
+                    .last = scan->check_visits.last,
+                    .is_owed = !scan->check_visits.since.empty()}};
 }
 
 bool Sequencer::Impl::visit_is_next_after(const ItemKey& in_hand, Instant now) const {
@@ -102,7 +103,7 @@ void Sequencer::Impl::choose_job(Instant now) {
 Detour Sequencer::Impl::detour_of(NextJob visit, const std::optional<ItemKey>& in_hand, Instant now) const {
   constexpr Duration kNone = Duration::max();
   const Target target = visit == NextJob::Reference ? Target::Reference : Target::Sample;
-  const VisitTrack& track = visit == NextJob::Reference ? scan->reference_visits : scan->check_visits;
+  const VisitTrack& track = visit == NextJob::Reference ? scan->reference_visits.due() : scan->check_visits;
   const Duration every = visit == NextJob::Reference ? scan->policy.reference_every : scan->policy.check_every;
   std::vector<ItemKey> ahead = scan->items.ahead(kBoundariesAhead + 2);
   if (in_hand && !ahead.empty() && ahead.front() == *in_hand) ahead.erase(ahead.begin());
@@ -112,7 +113,7 @@ Detour Sequencer::Impl::detour_of(NextJob visit, const std::optional<ItemKey>& i
   const Instant latest = *track.last + latest_after(every);
 
   Place standing = positions_of(*stage);
-  const auto there = place_of(*scan, {scan->visits_at, target}, config.instrument, standing);
+  const auto there = place_of(*scan, {track.at, target}, config.instrument, standing);
   if (!there) return {.here = {}, .least_ahead = kNone};
   Detour detour{.here = kNone, .least_ahead = kNone};
   for (std::size_t k = 0; k < ahead.size() && now + static_cast<std::int64_t>(k) * each <= latest; ++k) {
@@ -162,9 +163,9 @@ void Sequencer::Impl::accept_dark(Job& job, Instant now) {
 
 void Sequencer::Impl::start_visit(NextJob visit, Instant now) {
   const bool is_reference = visit == NextJob::Reference;
-  const VisitTrack& track = is_reference ? scan->reference_visits : scan->check_visits;
+  const VisitTrack& track = is_reference ? scan->reference_visits.due() : scan->check_visits;
   scan->job = new_job(is_reference ? Job::Kind::Reference : Job::Kind::Check, now);
-  scan->job->item = {scan->visits_at, is_reference ? Target::Reference : Target::Sample};
+  scan->job->item = {track.at, is_reference ? Target::Reference : Target::Sample};
   scan->job->chooser = scan->chooser.for_visit(visit_snr(scan->policy.drift_limit), track.rung);
   if (const auto aimed = aim(*scan->job); !aimed) return job_failed(aimed.error(), now);
   begin_measurement(*scan->job);
@@ -172,17 +173,17 @@ void Sequencer::Impl::start_visit(NextJob visit, Instant now) {
 
 void Sequencer::Impl::accept_visit(Job& job, Instant now) {
   const VisitKind kind = kind_of(job);
-  VisitTrack& track = kind == VisitKind::Reference ? scan->reference_visits : scan->check_visits;
+  VisitTrack& track = kind == VisitKind::Reference ? scan->reference_visits.at(job.item.point) : scan->check_visits;
   NewVisit visit{.scan = scan->id,
                  .time = job.time,
                  .readings = job.measurement->readings(),
                  .started = job.started,
                  .kind = kind,
-                 .level = level_of(scan->visits_at, *job.measurement, scan->chooser, config.instrument)};
+                 .level = level_of(track.at, *job.measurement, scan->chooser, config.instrument)};
   // The sample is judged against the standard, where there is one: what both see is the instrument's.
   const bool is_against_standard = kind == VisitKind::Check && scan->policy.reference_every > Duration::zero();
-  if (is_against_standard && scan->reference_visits.level) {
-    visit.level = in_units_of(*scan->reference_visits.level, *visit.level);
+  if (is_against_standard && scan->reference_visits.level()) {
+    visit.level = in_units_of(*scan->reference_visits.level(), *visit.level);
   }
   for (const std::size_t rung : job.measurement->used_rungs()) {
     scan->note_rung(rung);
@@ -217,13 +218,13 @@ void Sequencer::Impl::reopen_since(VisitTrack& track, NewVisit& visit, Instant n
   }
   for (const ItemKey& item : visit.reopened) {
     scan->failures.erase(item);
-    std::erase(scan->reference_visits.since, item);
+    scan->reference_visits.forget(item);
     std::erase(scan->check_visits.since, item);
   }
   StoreTransaction transaction{.at = now, .writes = {visit}, .events = {event_visit(visit)}};
   if (!points.empty()) transaction.events.push_back(event_reopened(visit, scan->policy.drift_limit, kept));
   const VisitLevel before = track.level.value_or(VisitLevel{});
-  track = {.level = visit.level, .since = {}, .last = now, .rung = track.rung};
+  track = {.at = track.at, .level = visit.level, .since = {}, .last = now, .rung = track.rung};
   commit(std::move(transaction), {.done = [](const CommitReceipt&, Instant) {}, .holds_exposures = true});
   if (kept > 0) keep_in_spite_of_drift(drift_between(before, *visit.level), kept, now);
 }

@@ -290,7 +290,7 @@ Progress Sequencer::Impl::progress() const {
              .skipped = scan->items.skipped(),
              .failed_attempts = scan->failed_attempts,
              .spent = scan->spent};
-  p.blocked = p.points - p.items / 2;
+  p.blocked = p.points - static_cast<std::int64_t>(scan->items.order().size());
   if (scan->job && scan->job->kind == Job::Kind::Item) p.in_hand = scan->job->item;
   if (scan->predicted) p.learned_from = scan->predicted->scans;
   if (!scan->end_estimate.is_ready()) {
@@ -305,17 +305,18 @@ Progress Sequencer::Impl::progress() const {
   return p;
 }
 
-// References follow the way of their samples backwards.
+// References follow the way of their samples backwards, where each sample has one.
 WorkLeft Sequencer::Impl::work_left() const {
   const ScanItems& items = scan->items;
   const WayAhead::Length ahead = scan->way.between(items.cursor(), items.order().size());
   const WayAhead::Length back =
       scan->way.between(items.cursor() - std::min(items.cursor(), items.owed()), items.cursor());
   constexpr double kUnseen = 0.1;  // of the way not looked at yet, relative
+  const double ways = scan->policy.reference_mode == api::ReferenceMode::SameGeometry ? 2.0 : 1.0;
   WorkLeft left{.samples = items.open(calibration::Target::Sample),
                 .references = items.open(calibration::Target::Reference),
-                .way_s = 2.0 * ahead.time_s + back.time_s,
-                .u_way_s = kUnseen * (2.0 * ahead.unseen_s + back.unseen_s),
+                .way_s = ways * ahead.time_s + back.time_s,
+                .u_way_s = kUnseen * (ways * ahead.unseen_s + back.unseen_s),
                 .turns_s = scan->turns.time_s,
                 .u_turns_s = scan->turns.u_s,
                 .dark_every = scan->policy.dark_every};
@@ -333,6 +334,7 @@ WorkLeft Sequencer::Impl::work_left() const {
 
 // At each turn, since it is not quite cheap.
 void Sequencer::Impl::look_at_turns() {
+  if (scan->policy.reference_mode != api::ReferenceMode::SameGeometry) return;  // visits turn, and count for themselves
   const ScanItems& items = scan->items;
   const drivers::AxisConfig& carriage = config.instrument.stage.axis(stage::Axis::Carriage);
   const CarriagePositions& places = config.instrument.carriage;

@@ -178,12 +178,12 @@ PlannedScan points_from(const json& words) {
   planned.order.resize(planned.points.size());
   for (const ScanPoint& point : planned.points) planned.order.at(static_cast<std::size_t>(point.rank)) = point.index;
   planned.asked = std::ssize(planned.points);
-  planned.items = 2 * planned.asked;
   return planned;
 }
 
 void read_completion(const json& words, NewScan& scan) {
   scan.planned = points_from(words.at("points"));
+  scan.planned.items = items_of(scan.planned.asked, scan.policy.reference_mode);
   scan.policy.target_snr = words.at("target_snr");
   scan.policy.max_time = Duration(words.at("max_time_ns").get<std::int64_t>());
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "daemon/planner/anchor.h"
 #include "daemon/planner/measuring_order.h"
 #include "tests/daemon/support/bench_instrument.h"
 
@@ -105,6 +106,77 @@ TEST(Planner, RefusesAWavelengthWithoutAFilterAndNamesThoseThereAre) {
   EXPECT_EQ(planned.error().seen, "700 nm");
   EXPECT_EQ(planned.error().where->field, "geometry.wavelength_nm");
   EXPECT_NE(planned.error().limit.find("568"), std::string::npos);
+}
+
+Instrument two_colours() {
+  Instrument instrument = bench_instrument();
+  instrument.filters.push_back({.slot = 2, .centroid = nanometres(650.0), .fwhm = nanometres(10.0)});
+  return instrument;
+}
+
+TEST(Planner, AddsTheAnchorForEachWavelengthThatLacksIt) {
+  api::Plan plan = bench_plan({0, 30}, {20, 60}, {90});
+  plan.wavelengths = {nanometres(568.0), nanometres(650.0)};
+  plan.reference_mode = api::ReferenceMode::Anchor;
+  plan.reference_every = std::chrono::minutes(2);
+  const auto same_geometry = expand(bench_plan({0, 30}, {20, 60}, {90}), two_colours());
+
+  const auto planned = expand(plan, two_colours());
+
+  ASSERT_TRUE(planned && same_geometry) << describe(planned.error());
+  EXPECT_EQ(planned->points.size(), 10U);
+  EXPECT_EQ(planned->anchors, 2);
+  EXPECT_EQ(planned->items, 10) << "no partners on the reference";
+  EXPECT_EQ(same_geometry->items, 8);
+  EXPECT_EQ(anchor_points(planned->points, plan.anchor).size(), 2U);
+}
+
+TEST(Planner, TakesThePlansOwnPointAsItsAnchor) {
+  api::Plan plan = bench_plan({0, 30}, {20, 45}, {90, 270});
+  plan.reference_mode = api::ReferenceMode::Anchor;
+  plan.reference_every = std::chrono::minutes(2);
+
+  const auto planned = expand(plan, bench_instrument());
+
+  ASSERT_TRUE(planned) << describe(planned.error());
+  EXPECT_EQ(planned->anchors, 0) << "at normal incidence the standard is the same at every azimuth";
+  ASSERT_EQ(anchor_points(planned->points, plan.anchor).size(), 1U);
+}
+
+TEST(Planner, RefusesAnAnchorThatCannotBeVisited) {
+  api::Plan plan = bench_plan({0, 30}, {20, 60}, {90});
+  plan.reference_mode = api::ReferenceMode::Anchor;
+  plan.anchor = {.theta_i = degrees(30), .phi_i = {}, .theta_r = degrees(31), .phi_r = {}};
+
+  const auto in_the_shadow = expand(plan, bench_instrument());
+  plan.anchor = {.theta_i = {}, .phi_i = {}, .theta_r = degrees(88), .phi_r = {}};
+  const auto out_of_reach = expand(plan, bench_instrument());
+
+  ASSERT_FALSE(in_the_shadow || out_of_reach);
+  EXPECT_EQ(in_the_shadow.error().code, ErrorCode::Blocked);
+  EXPECT_EQ(in_the_shadow.error().where->field, "reference.anchor");
+  EXPECT_EQ(out_of_reach.error().code, ErrorCode::OutOfLimits);
+  EXPECT_EQ(out_of_reach.error().where->field, "reference.anchor.theta_r_deg");
+}
+
+TEST(Planner, AnAnchoredScanTakesAboutHalfTheTime) {
+  std::vector<double> many;
+  for (int k = 0; k < 60; ++k) many.push_back(5.0 + k);
+  api::Plan plan = bench_plan({0, 30, 60}, many, {90, 135});
+  plan.block = std::chrono::minutes(15);
+  plan.reference_every = plan.block;
+  const auto pairs = expand(plan, bench_instrument());
+  plan.reference_mode = api::ReferenceMode::Anchor;
+
+  const auto anchored = expand(plan, bench_instrument());
+  plan.reference_mode = api::ReferenceMode::Absolute;
+  const auto absolute = expand(plan, bench_instrument());
+
+  ASSERT_TRUE(pairs && anchored && absolute);
+  const double ratio = in_seconds(anchored->estimate.total()) / in_seconds(pairs->estimate.total());
+  EXPECT_GT(ratio, 0.45);
+  EXPECT_LT(ratio, 0.65);
+  EXPECT_LT(absolute->estimate.total(), anchored->estimate.total());
 }
 
 TEST(Planner, RefusesMorePointsThanAnyScanCanHave) {

@@ -38,6 +38,33 @@ TEST(ScanItems, ABlockOfSamplesIsFollowedByItsReferencesLastFirst) {
   EXPECT_EQ(items.accepted(), 6);
 }
 
+TEST(ScanItems, WithoutPartnersAreTheSamplesAloneInTheirOrder) {
+  for (const auto mode : {api::ReferenceMode::Anchor, api::ReferenceMode::Absolute}) {
+    ScanItems items(3, {2, 0, 1}, seconds(1), {}, {}, mode);
+    EXPECT_EQ(items.next_after({2, Target::Sample}, kStart), (ItemKey{0, Target::Sample}));
+
+    const auto taken = take(items, 99);
+
+    EXPECT_EQ(taken, (std::vector<ItemKey>{{2, Target::Sample}, {0, Target::Sample}, {1, Target::Sample}}));
+    EXPECT_EQ(items.total(), 3);
+    EXPECT_EQ(items.accepted(), 3);
+    EXPECT_EQ(items.open(Target::Reference), 0);
+    EXPECT_FALSE(items.owes_reference());
+  }
+}
+
+TEST(ScanItems, WithoutPartnersARestartAReopeningAndAnotherOrderTakeTheSampleAlone) {
+  ScanItems items(3, {2, 0, 1}, seconds(100), {{2, Target::Sample}}, {}, api::ReferenceMode::Anchor);
+
+  EXPECT_FALSE(items.is_on_reference());
+  EXPECT_EQ(items.untouched(), (std::vector<std::int32_t>{0, 1}));
+  items.reorder({1, 0});
+  EXPECT_EQ(items.next(kStart), (ItemKey{1, Target::Sample}));
+  EXPECT_EQ(items.reopen(2), (std::vector<ItemKey>{{2, Target::Sample}}));
+  EXPECT_EQ(items.give_up({1, Target::Sample}), (std::vector<ItemKey>{{1, Target::Sample}}));
+  EXPECT_EQ(items.next(kStart), (ItemKey{2, Target::Sample}));
+}
+
 TEST(ScanItems, WhatIsNextAfterAnItemIsKnownBeforeItIsAccepted) {
   std::vector<std::int32_t> order(40);
   std::iota(order.begin(), order.end(), 0);
