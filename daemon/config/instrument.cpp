@@ -10,6 +10,7 @@
 
 #include "base/read_file.h"
 #include "base/toml_reader.h"
+#include "daemon/config/beams_section.h"
 #include "daemon/config/configuration_hash.h"
 #include "daemon/config/drives_section.h"
 #include "daemon/config/holds_section.h"
@@ -248,6 +249,7 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
   TomlReader lamp = root->table("lamp");
   instrument.model.lamp = read_lamp_model(lamp);
   instrument.lamp = read_lamp_band(lamp);
+  read_beams(*root, instrument.model);
   instrument.holds = read_holds(*root);
   GONIO_TRY(root->finish());
   instrument.sha256 = configuration_hash(*root, text);  // last: it asks for keys that this wire may not have

@@ -130,6 +130,22 @@ std::string uncertainty_sections(const Scene& scene) {
          least_scatter_line(lamp, meter != nullptr);
 }
 
+// Of an effect that the scene names only; what is fixed has no uncertainty.
+std::string beams_section(const Scene& scene) {
+  if (!scene.effects.overlap) return {};
+  const OverlapSpec& overlap = *scene.effects.overlap;
+  std::string text = fmt::format(
+      "\n[beams]\nspot_radius_mm = {:.10g}\nu_spot_radius_mm = 0.0\nfield_radius_mm = {:.10g}\nu_field_radius_mm = "
+      "0.0\n",
+      in_millimetres(overlap.spot_radius), in_millimetres(overlap.field_radius));
+  const auto add = [&text](std::string_view key, const std::optional<Length>& radius) {
+    if (radius) text += fmt::format("{} = {:.10g}\n", key, in_millimetres(*radius));
+  };
+  add("sample_radius_mm", overlap.sample_radius);
+  add("reference_radius_mm", overlap.reference_radius);
+  return text;
+}
+
 }  // namespace
 
 std::string instrument_toml(const Scene& scene, const WireAddresses& addresses) {
@@ -138,7 +154,7 @@ std::string instrument_toml(const Scene& scene, const WireAddresses& addresses) 
              "[instrument]\nname = \"simulated: {0}\"\n",
              scene.name) +
          stage_section(scene, addresses) + detector_section(scene, addresses) + radiometer_monitor_section(scene) +
-         uncertainty_sections(scene);
+         uncertainty_sections(scene) + beams_section(scene);
 }
 
 }  // namespace gonio::sim
