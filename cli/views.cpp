@@ -172,6 +172,15 @@ std::string budget_text(const api::BudgetReport& budget) {
   return text + fmt::format(", signal to noise {:.0f}", budget.target_snr);
 }
 
+std::string mode_text(const api::PlanMode& mode, const std::string& own) {
+  const std::string mark = mode.mode == own ? "this plan's: " : "";
+  if (mode.refused) return mark + "not to be had: " + *mode.refused;
+  const std::string mixed =
+      mode.mixed_share > 0.0 ? fmt::format("; {:.0f} % of the points mixed", 100.0 * mode.mixed_share) : "";
+  return fmt::format("{}{}; U median {:.2f} %, worst {:.2f} %, there mostly {}{}", mark, duration_text(mode.estimate_s),
+                     100.0 * mode.median_relative_u, 100.0 * mode.worst_relative_u, mode.dominant, mixed);
+}
+
 Table view(const api::PlanReport& plan) {
   Facts facts;
   facts.add("plan", plan.name)
@@ -195,6 +204,7 @@ Table view(const api::PlanReport& plan) {
       .add("disk", fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(plan.disk_bytes)))
       .add("expected_U", fmt::format("median {:.2f} %, worst {:.2f} %, of what is known before the sample is",
                                      100.0 * plan.median_relative_u, 100.0 * plan.worst_relative_u));
+  for (const api::PlanMode& mode : plan.modes) facts.add("mode " + mode.mode, mode_text(mode, plan.mode));
   return facts.take();
 }
 

@@ -11,6 +11,7 @@
 #include "daemon/app/instrument_report.h"
 #include "daemon/app/job_desk.h"
 #include "daemon/app/log.h"
+#include "daemon/app/mode_outlook.h"
 #include "daemon/app/plan_desk.h"
 #include "daemon/app/plan_outlook.h"
 #include "daemon/app/rest_order.h"
@@ -20,6 +21,7 @@
 #include "daemon/app/scan_review.h"
 #include "daemon/app/version_desk.h"
 #include "daemon/planner/order_report.h"
+#include "daemon/store/policy_names.h"
 #include "daemon/store/version_list.h"
 
 namespace gonio::daemon {
@@ -122,6 +124,24 @@ NewScan new_scan(CheckedPlan checked, const api::PlanSubmission& submission, con
   return scan;
 }
 
+void add_modes(api::PlanReport& report, const CheckedPlan& checked, const Instrument& instrument) {
+  const auto name = [](api::ReferenceMode mode) {
+    return std::string(kReferenceModeNames[static_cast<std::size_t>(mode)]);
+  };
+  report.mode = name(checked.plan.reference_mode);
+  for (const ModeOutlook& one : mode_outlooks(checked.plan, checked.planned, instrument, *checked.reference.standard)) {
+    api::PlanMode mode{.mode = name(one.mode),
+                       .estimate_s = in_seconds(one.time),
+                       .median_relative_u = one.median_relative_u,
+                       .worst_relative_u = one.worst_relative_u,
+                       .dominant = one.dominant,
+                       .mixed_share = one.looked_at == 0 ? 0.0 : static_cast<double>(one.mixed) / one.looked_at,
+                       .refused = std::nullopt};
+    if (!one.refused.empty()) mode.refused = one.refused;
+    report.modes.push_back(std::move(mode));
+  }
+}
+
 void add_outlook(api::PlanReport& report, const CheckedPlan& checked, const Instrument& instrument) {
   const OrderReport order = judge_order(checked.plan, instrument, checked.planned);
   report.walk = {.walk_s = in_seconds(order.walk),
@@ -137,6 +157,7 @@ void add_outlook(api::PlanReport& report, const CheckedPlan& checked, const Inst
   report.worst_relative_u = ahead.worst_relative_u;
   report.relative_u = ahead.relative_u;
   report.relative_u.resize(std::min(kOrderShown, report.relative_u.size()));
+  add_modes(report, checked, instrument);
 }
 
 api::BudgetReport budget_report(const BudgetChoice& choice) {

@@ -175,6 +175,7 @@ class Expansion {
   // The standard is visited at a point of the scan, so that its way and its limits are those of points: the sample is
   // measured there too.
   Result<void> add_anchors() {
+    if (plan_.budget) return failure(budget_with_anchor());
     const std::vector<ScanPoint> asked = planned_.points;
     std::vector<Wavelength> done;
     for (const ScanPoint& point : asked) {
@@ -191,6 +192,16 @@ class Expansion {
       ++planned_.anchors;
     }
     return {};
+  }
+
+  // The share of a budget knows no point that must be kept.
+  [[nodiscard]] static Error budget_with_anchor() {
+    return {.code = ErrorCode::InvalidInput,
+            .device = "plan",
+            .tried = "leave points out for the budget",
+            .seen = "the standard is visited at one of them",
+            .limit = "a budget in same-geometry or absolute mode, or no budget",
+            .where = InputLocation{.field = "reference.mode"}};
   }
 
   [[nodiscard]] Error blocked_anchor() const {

@@ -83,13 +83,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StatusReport, version, instrumen
                                                 detector_error, store_error, last_event)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HealthReport, ok, version)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanOrder, walk_s, bound_s, bound, as_written_s, snaked_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanMode, mode, estimate_s, median_relative_u, worst_relative_u,
+                                                dominant, mixed_share, refused)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BudgetReport, allowed_s, wished_s, directions, kept, repeats,
                                                 kept_repeats, target_snr, widest_gap_deg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PlanReport, name, sample, reference, planner_version, asked, points,
                                                 merged, blocked, items, estimate, estimate_s, order, out_of_reach,
                                                 without_partner, walk, u_estimate_s, visits, disk_bytes,
                                                 median_relative_u, worst_relative_u, relative_u, learned_from_scans,
-                                                budget)
+                                                budget, mode, modes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointReport, index, rank, theta_i_deg, phi_i_deg, theta_r_deg,
                                                 phi_r_deg, wavelength_nm, blocked, sample, reference, attempts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfReport, point, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,

@@ -172,6 +172,17 @@ struct BudgetReport {
   double widest_gap_deg = 0.0;  ///< from a direction that was left out to the nearest kept one
 };
 
+/// What a plan's points would take and would be worth in one reference mode.
+struct PlanMode {
+  std::string mode;                ///< "same-geometry", "anchor", "absolute"
+  double estimate_s = 0.0;         ///< of the scan
+  double median_relative_u = 0.0;  ///< expected U / f, of a sample as white as the standard
+  double worst_relative_u = 0.0;
+  std::string dominant;                ///< the largest component at the worst point
+  double mixed_share = 0.0;            ///< of the points, where neither spot nor field of view holds the other
+  std::optional<std::string> refused;  ///< why the mode cannot be had; the figures are then 0
+};
+
 /// A dry run: what a plan would do on this instrument.
 struct PlanReport {
   std::string name;
@@ -197,6 +208,8 @@ struct PlanReport {
   std::vector<double> relative_u;       ///< of the points in `order`
   std::int64_t learned_from_scans = 0;  ///< finished scans of this configuration that the time rests on
   std::optional<BudgetReport> budget;   ///< of a plan that has one
+  std::string mode;             ///< the plan's own
+  std::vector<PlanMode> modes;  ///< all of them, beside each other
 };
 
 struct PointReport {
