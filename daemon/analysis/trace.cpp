@@ -102,7 +102,9 @@ Result<std::string> trace_text(const StoredScan& scan, const daemon::PointTrace&
               : value_lines(scan, *row, recomputed);
   for (const daemon::TracedAttempt& attempt : trace.attempts) text += attempt_lines(attempt);
   if (planned->reference_outcome.empty() && !planned->point.blocked) {
-    text += "the standard was not read for this point: a value without it rests on the same geometry's reading, on the visits of the anchor, or on none, by the plan's mode\n";
+    text +=
+        "the standard was not read for this point: a value without it rests on the same geometry's reading, on the "
+        "visits of the anchor, or on none, by the plan's mode\n";
   }
   for (const daemon::TracedVisit& dark : trace.darks) {
     // A budget counts visits and attempts as one list (StoreReader::readings).

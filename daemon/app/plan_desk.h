@@ -19,8 +19,8 @@ struct CheckedPlan {
   ShelfEntry reference;
 };
 
-/// Whether the standard reaches what it is read at: every point that is not blocked, the anchor alone, or nothing. Errors:
-/// ReferenceOutOfReach.
+/// Whether the standard reaches what it is read at: every point that is not blocked, the anchor alone, or nothing.
+/// Errors: ReferenceOutOfReach.
 [[nodiscard]] Result<void> check_standard_reaches(const std::vector<ScanPoint>& points, api::ReferenceMode mode,
                                                   const Geometry& anchor,
                                                   const calibration::ReferenceStandard& standard);

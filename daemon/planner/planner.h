@@ -12,10 +12,11 @@ namespace gonio::daemon {
 inline constexpr int kPlannerVersion = 3;
 
 /// The points of a plan on an instrument, in the order of measurement: a pure function, for the dry run and for the
-/// run. In anchor mode it has a point at the anchor for each wavelength. Of a plan with a budget only what fits into it by the estimate, chosen by `share_out`. Errors: OutOfLimits
-/// (axis, value, limit, the plan's field), AllPointsBlocked, Blocked (a point that the arms cannot come to from the one
-/// before, with the place on the path; the anchor in the keep-out), InvalidInput (a wavelength without a filter, an exposure that is none of the
-/// detector's, no points or more than 10^7).
+/// run. In anchor mode it has a point at the anchor for each wavelength. Of a plan with a budget only what fits into it
+/// by the estimate, chosen by `share_out`. Errors: OutOfLimits (axis, value, limit, the plan's field),
+/// AllPointsBlocked, Blocked (a point that the arms cannot come to from the one before, with the place on the path; the
+/// anchor in the keep-out), InvalidInput (a wavelength without a filter, an exposure that is none of the detector's, no
+/// points or more than 10^7).
 [[nodiscard]] Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument,
                                          const TimeExperience& experience = {});
 

@@ -421,8 +421,9 @@ ALTER TABLE scan ADD COLUMN anchor_theta_r_deg REAL NOT NULL DEFAULT 45.0;
 ALTER TABLE scan ADD COLUMN anchor_phi_r_deg REAL NOT NULL DEFAULT 0.0;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5,
-                                                              kVersion6, kVersion7, kVersion8, kVersion9, kVersion10, kVersion11};
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2,  kVersion3, kVersion4,
+                                                              kVersion5, kVersion6,  kVersion7, kVersion8,
+                                                              kVersion9, kVersion10, kVersion11};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

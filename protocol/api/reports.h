@@ -208,8 +208,8 @@ struct PlanReport {
   std::vector<double> relative_u;       ///< of the points in `order`
   std::int64_t learned_from_scans = 0;  ///< finished scans of this configuration that the time rests on
   std::optional<BudgetReport> budget;   ///< of a plan that has one
-  std::string mode;             ///< the plan's own
-  std::vector<PlanMode> modes;  ///< all of them, beside each other
+  std::string mode;                     ///< the plan's own
+  std::vector<PlanMode> modes;          ///< all of them, beside each other
 };
 
 struct PointReport {

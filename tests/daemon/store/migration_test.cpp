@@ -58,6 +58,20 @@ TEST_F(OldStore, OfVersion1KeepsItsScanWhichChoosesItsExposures) {
   EXPECT_EQ(points->size(), 2U);
 }
 
+TEST_F(OldStore, OfVersion1HasScansThatReadTheStandardAtEveryGeometry) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto reader = StoreReader::open(path_);
+  ASSERT_TRUE(reader) << describe(reader.error());
+  const auto info = (*reader)->scan(1);
+
+  ASSERT_TRUE(info) << describe(info.error());
+  EXPECT_EQ(info->policy.reference_mode, api::ReferenceMode::SameGeometry);
+  EXPECT_NEAR(in_degrees(info->policy.anchor.theta_r), 45.0, 1e-12);
+}
+
 TEST_F(OldStore, OfVersion1GainsReductionsAndTemperaturesThatMayBeUnknown) {
   write("version_1.sql");
   const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
