@@ -12,9 +12,11 @@ using calibration::Target;
 namespace {
 
 void flatten(calibration::ReferenceDefinition& reference) {
-  const calibration::ShapeTable& shape = reference.shape;
-  reference.shape = calibration::ShapeTable(shape.theta_i(), shape.theta_r(), shape.phi(),
-                                            std::vector<double>(shape.values().size(), 1.0));
+  for (calibration::SpectralShape& shape : reference.shapes) {
+    const calibration::ShapeTable& table = shape.table;
+    shape.table = calibration::ShapeTable(table.theta_i(), table.theta_r(), table.phi(),
+                                          std::vector<double>(table.values().size(), 1.0));
+  }
 }
 
 void forget_dark_current(RawReading& dark) {
