@@ -5,7 +5,7 @@
 namespace gonio::calibration {
 namespace {
 
-constexpr std::array<FlagWord, 13> kWords{{
+constexpr std::array<FlagWord, 13> kFlagWords{{
     {PointFlag::NearZero, "near-zero", "not told from zero: |f| is at most U; the sign is kept"},
     {PointFlag::DarkExtrapolated, "dark-extrapolated", "no dark on one side of a reading: the nearest one, widened"},
     {PointFlag::FewNeighbours, "few-neighbours", "no other point on a line of angles: the slope there is guessed"},
@@ -22,8 +22,8 @@ constexpr std::array<FlagWord, 13> kWords{{
 }};
 
 constexpr bool bits_ascend() {
-  for (std::size_t n = 0; n < kWords.size(); ++n) {
-    if (static_cast<std::uint32_t>(kWords[n].flag) != 1U << n) return false;
+  for (std::size_t n = 0; n < kFlagWords.size(); ++n) {
+    if (static_cast<std::uint32_t>(kFlagWords[n].flag) != 1U << n) return false;
   }
   return true;
 }
@@ -32,12 +32,12 @@ static_assert(bits_ascend());
 }  // namespace
 
 std::span<const FlagWord> all_flag_words() {
-  return kWords;
+  return kFlagWords;
 }
 
 std::string flag_words(std::uint32_t flags) {
   std::string words;
-  for (const FlagWord& word : kWords) {
+  for (const FlagWord& word : kFlagWords) {
     if (has(flags, word.flag)) words += (words.empty() ? "" : " ") + std::string(word.name);
   }
   return words;

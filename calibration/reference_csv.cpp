@@ -326,8 +326,8 @@ std::vector<double> in_degrees_list(const std::vector<Angle>& grid) {
 }
 
 std::string_view kind_word(ShapeModeKind kind) {
-  constexpr std::array<std::string_view, 4> kWords{"limb", "forward", "sideways", "opposition"};
-  return kWords[static_cast<std::size_t>(kind)];
+  constexpr std::array<std::string_view, 4> kModeWords{"limb", "forward", "sideways", "opposition"};
+  return kModeWords[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace
