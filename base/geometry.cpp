@@ -8,7 +8,7 @@ namespace gonio {
 Angle wrapped(Angle a) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (a.si() > -std::numbers::pi && a.si() <= std::numbers::pi) return a;  // most are, and a division is slow
-  const double r = std::remainder(a.si(), kTurn);  // [-pi, pi]
+  const double r = std::remainder(a.si(), kTurn);                          // [-pi, pi]
   return radians(r <= -std::numbers::pi ? std::numbers::pi : r);
 }
 

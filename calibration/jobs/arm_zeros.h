@@ -18,9 +18,10 @@ struct ArmZeroOptions {
 /// ln q. With e the mirror's lean in the plane of incidence (prior u_mirror) and n twice the one across it (open):
 ///   theta_i > 0:  centre theta_r = theta_i + z_i - z_r - 2 e;   centre phi_r = 180 deg - z_phi + n / sin(theta_r)
 ///   theta_i = 0:  centre theta_r = -z_r - (z_i - 2 e) cos(phi_r) - n sin(phi_r)
-/// Where the normal was not crossed, z_i and z_r start from what the instrument states (0 with u_zero; with half of their
-/// difference, where that is beyond twice of what is stated): what the crossings leave open stays as uncertain as that. Values: "zero_theta_i_deg", "zero_theta_r_deg", "zero_phi_r_deg" (deg) with their covariance.
-/// Errors: IncompleteData (fewer than three theta_i with both crossings).
+/// Where the normal was not crossed, z_i and z_r start from what the instrument states (0 with u_zero; with half of
+/// their difference, where that is beyond twice of what is stated): what the crossings leave open stays as uncertain as
+/// that. Values: "zero_theta_i_deg", "zero_theta_r_deg", "zero_phi_r_deg" (deg) with their covariance. Errors:
+/// IncompleteData (fewer than three theta_i with both crossings).
 [[nodiscard]] Result<FoundValues> fit_arm_zeros(const ScanReadings& scan, const InstrumentModel& instrument,
                                                 const ArmZeroOptions& options);
 
