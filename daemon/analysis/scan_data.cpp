@@ -30,6 +30,14 @@ MeasuredPoint data_point(const daemon::BrdfRow& row) {
   return point;
 }
 
+// What bounds an error whose course over the points nobody knows.
+bool has_known_pattern(const std::string& component) {
+  for (const char* word : {"unresolved", "lamp after", "drift"}) {
+    if (component.find(word) != std::string::npos) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<MeasuredScan> scan_data(const StoredScan& scan, const formats::MeasuredBrdf& brdf, std::size_t channel) {
@@ -45,7 +53,9 @@ Result<MeasuredScan> scan_data(const StoredScan& scan, const formats::MeasuredBr
                     .components = {},
                     .points = {}};
   for (const std::string& name : scan.brdf.component_names) {
-    data.components.push_back({.name = name.substr(0, name.find(" [")), .source = source_of(name, scan)});
+    data.components.push_back({.name = name.substr(0, name.find(" [")),
+                               .source = source_of(name, scan),
+                               .is_pattern_known = has_known_pattern(name)});
   }
   // `brdf` was made of these rows, in their order.
   for (std::size_t n = 0; n < scan.brdf.rows.size(); ++n) {
