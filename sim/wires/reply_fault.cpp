@@ -19,7 +19,7 @@ struct Written {
   std::size_t count = 0;
 };
 
-std::size_t word(std::span<const std::uint8_t> pdu, std::size_t at) {
+std::size_t number_at(std::span<const std::uint8_t> pdu, std::size_t at) {
   return static_cast<std::size_t>(pdu[at] << 8U | pdu[at + 1]);
 }
 
@@ -27,8 +27,8 @@ std::optional<Written> written_by(std::span<const std::uint8_t> pdu) {
   constexpr std::uint8_t kWriteOne = 6;
   constexpr std::uint8_t kWriteMany = 16;
   if (pdu.size() < 5) return std::nullopt;
-  if (pdu[0] == kWriteOne) return Written{word(pdu, 1), 1};
-  if (pdu[0] == kWriteMany) return Written{word(pdu, 1), word(pdu, 3)};
+  if (pdu[0] == kWriteOne) return Written{number_at(pdu, 1), 1};
+  if (pdu[0] == kWriteMany) return Written{number_at(pdu, 1), number_at(pdu, 3)};
   return std::nullopt;
 }
 
