@@ -26,7 +26,7 @@ double geometric_mean_s(const std::vector<Duration>& ladder) {
 }  // namespace
 
 LightForecast::LightForecast(const api::Plan& plan, const Instrument& instrument, const TimeExperience& experience)
-    : experience_(experience),
+    : white_(experience.white),
       expected_(plan.expected_reflectance),
       target_snr_(plan.target_snr),
       is_guess_(plan.exposures.empty() && !instrument.detector.power),
@@ -47,10 +47,10 @@ double LightForecast::reflectance_of(Target target) const {
 // The detector sees a part of the spot only, so its signal goes with the light on it.
 std::optional<ExposureChooser::Signal> LightForecast::signal_of(const ScanPoint& point, double reflectance) const {
   if (!expected_) return std::nullopt;
-  const auto seen = std::ranges::find_if(experience_.white, [&point](const WhiteSignal& white) {
+  const auto seen = std::ranges::find_if(white_, [&point](const WhiteSignal& white) {
     return std::abs(in_nanometres(white.wavelength) - in_nanometres(point.wavelength)) < kSameLine_nm;
   });
-  if (seen == experience_.white.end()) return std::nullopt;
+  if (seen == white_.end()) return std::nullopt;
   return ExposureChooser::Signal{seen->dn_per_s * reflectance * std::cos(point.geometry.theta_i.si()), pixels_};
 }
 

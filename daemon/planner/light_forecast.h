@@ -43,7 +43,7 @@ class LightForecast {
   [[nodiscard]] double reflectance_of(calibration::Target target) const;
   [[nodiscard]] Light by(const ExposureChooser& chooser, const ScanPoint& point, calibration::Target target) const;
 
-  const TimeExperience& experience_;
+  std::vector<WhiteSignal> white_;  ///< of the standard, as past scans saw it
   std::optional<double> expected_;
   double target_snr_;
   bool is_guess_;

@@ -33,8 +33,11 @@ const std::map<std::string, Names>& allowed() {
       {"sim", {"protocol/stage", "protocol/usbtmc", "reflectance", "reflectance/formats", "base"}},
       {"cli", {"protocol/api", "base"}},
       {"daemon",
-       {"drivers", "calibration", "reflectance", "reflectance/formats", "reflectance/fit", "protocol/stage",
+       {"daemon/analysis", "drivers", "calibration", "reflectance", "reflectance/formats", "protocol/stage",
         "protocol/api", "base"}},
+      // The worker program, the only one with Ceres.
+      {"daemon/analysis",
+       {"daemon", "calibration", "reflectance", "reflectance/formats", "reflectance/fit", "protocol/api", "base"}},
   };
   return kAllowed;
 }

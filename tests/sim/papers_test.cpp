@@ -106,7 +106,8 @@ TEST(ReferenceToml, IsReadByTheDaemonAsTheUndrawnStandard) {
   ASSERT_EQ(read->modes().size(), 2U);
   EXPECT_DOUBLE_EQ(read->certificate().entries.front().u, 0.0025);
   const Geometry node{degrees(45.0), degrees(0.0), degrees(30.0), degrees(90.0)};
-  EXPECT_NEAR(read->table().value(node), SpectralonShape()(node), 5e-6) << "five digits are written";
+  ASSERT_EQ(read->shapes().size(), 1U);
+  EXPECT_NEAR(read->shapes().front().table.value(node), SpectralonShape()(node), 5e-6) << "five digits are written";
 }
 
 Scene scene_with_meters() {
