@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "base/clock.h"
 #include "calibration/raw_reading.h"
