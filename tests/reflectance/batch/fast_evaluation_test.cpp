@@ -44,9 +44,10 @@ TEST(FastEvaluation, StaysWithinItsBoundForEveryModel) {
   }
 }
 
-TEST(FastEvaluation, HasAKernelForEveryNamedModel) {
+TEST(FastEvaluation, HasAKernelForEveryNamedModelButThoseOfFacets) {
   for (const Surface& s : batch_surfaces()) {
-    EXPECT_TRUE(s.fast_path().has_kernel) << s.model();
+    const bool is_of_facets = s.model() == "ggx" || s.model() == "beckmann";
+    EXPECT_EQ(s.fast_path().has_kernel, !is_of_facets) << s.model();
     EXPECT_LE(s.fast_path().relative_error, 1e-12) << s.model();
   }
   EXPECT_LE(wheat().fast_path().relative_error, 3e-15);
