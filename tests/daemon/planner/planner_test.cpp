@@ -170,6 +170,7 @@ TEST(Planner, AnAnchoredScanTakesAboutHalfTheTime) {
 
   const auto anchored = expand(plan, bench_instrument());
   plan.reference_mode = api::ReferenceMode::Absolute;
+  plan.reference_every = {};
   const auto absolute = expand(plan, bench_instrument());
 
   ASSERT_TRUE(pairs && anchored && absolute);
