@@ -42,8 +42,6 @@ class CommandLine {
     events.add_flag("-f,--follow", wanted.follow, "wait for more");
     events.add_option("--after", wanted.after, "begin after this event's number")->check(CLI::NonNegativeNumber);
     add_replay();
-    CLI::App& reference = group("reference", "reference standards");
-    leaf(reference, "list", "the standards this daemon knows", Verb::ReferenceList);
     add_calibration();
     add_reference();
   }

@@ -168,7 +168,7 @@ TEST(TapeInput, KeepsTheVeryPointsOfACompletionInTheirOrder) {
 }
 
 TEST(TapeInput, KeepsWhatPastScansHadTaughtSoThatABudgetChoosesTheSamePoints) {
-  NewScan scan = planned_scan("[budget]\ntime_min = 0.2\n");
+  NewScan scan = planned_scan("[budget]\ntime_min = 0.4\n");
   scan.planned.experience = {
       .scans = 3, .motion = {3.0, 0.01}, .beyond_s = {1.25, 0.5}, .white = {{nanometres(568.0), 1e5}}};
 
