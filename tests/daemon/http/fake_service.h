@@ -134,7 +134,9 @@ class FakeService final : public daemon::Service {
   }
   Result<api::BrdfPage> brdf(std::int64_t, std::int64_t, int) override { return api::BrdfPage{}; }
   Result<std::string> export_csv(std::int64_t) override { return std::string("# scan: 3\npoint,theta_i_deg\n0,30\n"); }
-  Result<api::ReferenceList> references() override { return api::ReferenceList{{white()}}; }
+  Result<api::ReferenceList> references() override {
+    return api::ReferenceList{has_standard ? std::vector{white()} : std::vector<api::ReferenceReport>{}};
+  }
   Result<api::ScanChecksReport> checks(std::int64_t scan) override {
     return api::ScanChecksReport{.scan = scan,
                                  .summary = "failed: reciprocity",
@@ -271,6 +273,7 @@ class FakeService final : public daemon::Service {
   std::atomic<bool> hold_replies{false};  ///< moves wait for answer_held
   std::string scan_state = "running";     ///< set before the server starts
   std::int64_t free_bytes = 1'000'000'000'000;
+  bool has_standard = true;             ///< on its shelf
   std::string analysis_state = "done";  ///< set before it is asked for
 
  private:
