@@ -44,13 +44,16 @@ Shapes shapes_of(const BeamDiscs& discs, const Geometry& g) {
   return shapes;
 }
 
-// Doubled azimuths in [0, 2 pi) at which two edges cross: none or two.
+// Doubled azimuths in [0, 2 pi) at which two edges cross, ascending: of each two edges none or two.
 struct Cuts {
   std::array<double, 7> at{};
   std::size_t count = 0;
   void add(double doubled) {
     const double turns = doubled / (2.0 * kHalfCircle);
-    at[count++] = 2.0 * kHalfCircle * (turns - std::floor(turns));
+    const double within = 2.0 * kHalfCircle * (turns - std::floor(turns));
+    std::size_t place = count++;
+    for (; place > 0 && at[place - 1] > within; --place) at[place] = at[place - 1];
+    at[place] = within;
   }
 };
 
@@ -129,7 +132,6 @@ Overlap overlap_of(const BeamDiscs& discs, const Geometry& g) {
     for (std::size_t l = k + 1; l < shapes.count; ++l) add_crossings(shapes.of[k], shapes.of[l], cuts);
   }
   if (cuts.count == 0) cuts.add(0.0);
-  std::sort(cuts.at.begin(), cuts.at.begin() + static_cast<std::ptrdiff_t>(cuts.count));
   cuts.at[cuts.count] = cuts.at[0] + 2.0 * kHalfCircle;
   Overlap sum;
   std::array<double, 3> parts{};
