@@ -1,6 +1,5 @@
 #include "calibration/overlap.h"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
