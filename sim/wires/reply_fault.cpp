@@ -23,12 +23,16 @@ std::size_t number_at(std::span<const std::uint8_t> pdu, std::size_t at) {
   return static_cast<std::size_t>(pdu[at] << 8U | pdu[at + 1]);
 }
 
+constexpr std::uint8_t kReadAndWrite = 23;
+
 std::optional<Written> written_by(std::span<const std::uint8_t> pdu) {
   constexpr std::uint8_t kWriteOne = 6;
   constexpr std::uint8_t kWriteMany = 16;
+  constexpr std::size_t kBeforeItsWrite = 9;  // function, first and count to read, first and count to write
   if (pdu.size() < 5) return std::nullopt;
   if (pdu[0] == kWriteOne) return Written{number_at(pdu, 1), 1};
   if (pdu[0] == kWriteMany) return Written{number_at(pdu, 1), number_at(pdu, 3)};
+  if (pdu[0] == kReadAndWrite && pdu.size() >= kBeforeItsWrite) return Written{number_at(pdu, 5), number_at(pdu, 7)};
   return std::nullopt;
 }
 
@@ -66,7 +70,8 @@ ExchangeKind exchange_kind(std::span<const std::uint8_t> pdu, const stage::Regis
   };
   if (covers(Field::MotionCommand)) return ExchangeKind::Motion;
   if (covers(Field::SourceShutterCommand)) return ExchangeKind::Shutters;
-  return covers(Field::Heartbeat) ? ExchangeKind::Heartbeat : ExchangeKind::Any;
+  if (covers(Field::Heartbeat)) return ExchangeKind::Heartbeat;
+  return pdu[0] == kReadAndWrite ? ExchangeKind::Look : ExchangeKind::Any;  // a look writes a token of its own
 }
 
 ExchangeFate fate_of_exchange(LiveInstrument::Parts& parts, std::span<const std::uint8_t> pdu) {
