@@ -60,8 +60,8 @@ Law law_of(double value, const Budget& budget, const TermList& terms, const Nonl
   std::ranges::stable_sort(divisor, {}, &TermList::DivisorTerm::component);
   const auto divided = [&](std::uint32_t component) {
     double sum = 0.0;
-    const auto [from, to] = std::ranges::equal_range(divisor, component, {}, &TermList::DivisorTerm::component);
-    for (auto term = from; term != to; ++term) sum += term->relative;
+    auto term = std::ranges::lower_bound(divisor, component, {}, &TermList::DivisorTerm::component);
+    for (; term != divisor.end() && term->component == component; ++term) sum += term->relative;
     return sum;
   };
   Law law;

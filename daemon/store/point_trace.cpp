@@ -97,8 +97,8 @@ std::vector<TracedVisit> darks_about(Database& database, ScanId scan, const std:
     add(after.bind(scan).bind(attempt.attempt));
   }
   std::ranges::sort(darks, {}, &TracedVisit::visit);
-  const auto rest = std::ranges::unique(darks, {}, &TracedVisit::visit);
-  darks.erase(rest.begin(), rest.end());
+  const auto is_same = [](const TracedVisit& a, const TracedVisit& b) { return a.visit == b.visit; };
+  darks.erase(std::unique(darks.begin(), darks.end(), is_same), darks.end());
   for (TracedVisit& dark : darks) dark.readings = readings_of_visit(database, dark.visit);
   return darks;
 }
