@@ -35,6 +35,8 @@ inline std::vector<NamedSurface> sampled_surfaces() {
       {"cox_munk_smith", {{"wind_m_per_s", 5.0}, {"refractive_index", 1.34}}},
       {"glint", {{"slope_variance", 0.004}, {"refractive_index", 1.5}}},
       {"glint_smith", {{"slope_variance", 0.01}, {"refractive_index", 1.5}}},
+      {"beckmann", {{"roughness", 0.3}, {"refractive_index", 1.5}}},
+      {"ggx", {{"roughness", 0.3}, {"refractive_index", 1.5}}},
   };
   std::vector<NamedSurface> all;
   for (const auto& [name, parameters] : models) all.push_back({name, surface(name, parameters)});
