@@ -82,7 +82,7 @@ struct LampModel {
 struct StrayModel {
   Measured<double> source_share;  ///< the same before sample, standard and black trap; corrected
   /// Of all light that the target sends back (pi times its irradiance times rho_dh), scattered within the detector: no
-  /// trap shows it. Corrected where the scan's own points give rho_dh, else in the budget.
+  /// trap shows it. Never corrected: in the budget only, with pi f in place of the sample's rho_dh.
   Measured<double> internal_share;
 };
 
