@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
 #include <nlohmann/json.hpp>
 
+#include "tests/reflectance/formats/bird_checker.h"
 #include "tests/reflectance/formats/json_schema.h"
 #include "tests/reflectance/formats/sample_files.h"
 #include "tests/reflectance/formats/shared_data.h"
@@ -138,27 +137,31 @@ TEST(BirdFile, PassesThePublishedSchema) {
   }
 }
 
-TEST(BirdFile, PassesAjv) {
-  const std::filesystem::path folder = shared_folder() / "schemas/bird";
-  if (!std::filesystem::exists(folder) || std::system("node --version >/dev/null 2>&1") != 0) {
-    std::cout << "no BiRD schema in " << folder << ", or no node: nothing checked\n";
+TEST(BirdFile, PassesAjvAndABrokenOneDoesNot) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> good;
+  for (const MeasuredBrdf& brdf : {two_channels(), with_all_metadata(), bright_aside()}) {
+    good.push_back(folder / (std::to_string(good.size()) + ".brdf"));
+    test::write_text(good.back(), bytes_of(write_bird(brdf), ".brdf"));
+  }
+  json negative = json::parse(bytes_of(write_bird(bright_aside()), ".brdf"));
+  json nameless = negative;
+  negative["data"]["BRDF"]["values"][0] = -1.0;
+  nameless.erase("metadata");
+  test::write_text(folder / "negative.brdf", negative.dump());
+  test::write_text(folder / "nameless.brdf", nameless.dump());
+
+  const auto on_good = checked_by_ajv(good, folder.path());
+  const auto on_broken = checked_by_ajv({folder / "negative.brdf", folder / "nameless.brdf"}, folder.path());
+
+  if (!on_good) {
+    std::cout << "no BiRD schema in " << shared_folder() << ": nothing checked\n";
     return;
   }
-  std::string scratch = (std::filesystem::temp_directory_path() / "gonio-bird-XXXXXX").string();
-  ASSERT_NE(mkdtemp(scratch.data()), nullptr);
-  std::string command = "node '" GONIO_SOURCE_DIR "/tests/reflectance/formats/check_bird.js' '" + folder.string() + "'";
-  for (const MeasuredBrdf& brdf : {two_channels(), with_all_metadata(), bright_aside()}) {
-    const std::string path = scratch + "/" + std::to_string(command.size()) + ".brdf";
-    std::ofstream(path) << bytes_of(write_bird(brdf), ".brdf");
-    command += " " + path;
-  }
-
-  const int status = std::system(command.c_str());
-  std::filesystem::remove_all(scratch);
-
-  ASSERT_TRUE(WIFEXITED(status));
-  if (WEXITSTATUS(status) == 2) std::cout << "node has no ajv (GONIO_NODE_MODULES): nothing checked\n";
-  EXPECT_NE(WEXITSTATUS(status), 1);
+  EXPECT_EQ(on_good->exit_code, 0) << on_good->output << on_good->errors;
+  EXPECT_EQ(on_broken->exit_code, 1) << on_broken->output << on_broken->errors;
+  EXPECT_THAT(on_broken->output, HasSubstr("negative.brdf [{\"instancePath\":\"/data/BRDF/values/0\""));
+  EXPECT_THAT(on_broken->output, HasSubstr("must have required property 'metadata'"));
 }
 
 TEST(BirdFile, OfOthersIsRead) {

@@ -1,5 +1,5 @@
 // node check_bird.js SCHEMA_FOLDER FILE...: exit 0 when ajv's 2020 build finds every file valid, 1 when not, 2 when there is
-// no ajv. ajv is looked for in $GONIO_NODE_MODULES, then where node looks.
+// no ajv. ajv is what `npm ci` puts beside this file, or in $GONIO_NODE_MODULES.
 const fs = require('fs');
 const path = require('path');
 
@@ -13,7 +13,7 @@ try {
   Ajv = from_npm('ajv/dist/2020').default;
   formats = from_npm('ajv-formats').default;
 } catch (problem) {
-  console.log('no ajv (npm install ajv ajv-formats)');
+  console.log(`no ajv: npm ci --prefix ${__dirname}`);
   process.exit(2);
 }
 const ajv = new Ajv({strict: false, allErrors: true});
