@@ -28,7 +28,8 @@ double phi_to_v(double phi) {
 
 class RglReader {
  public:
-  RglReader(Tensors tensors, std::string file) : tensors_(std::move(tensors)), file_(std::move(file)) {}
+  RglReader(Tensors tensors, std::string file, std::size_t most_points)
+      : tensors_(std::move(tensors)), file_(std::move(file)), most_points_(most_points) {}
 
   Result<MeasuredBrdf> read() {
     GONIO_TRY(take_fields());
@@ -106,8 +107,16 @@ class RglReader {
 
   void take_channels() {
     if (is_colour_) brdf_.channels = {{.name = "R"}, {.name = "G"}, {.name = "B"}};
-    if (!is_colour_)
-      for (const double wavelength : wavelengths_->values) brdf_.channels.push_back(channel_at(wavelength));
+    const std::size_t count = values_->shape[2];
+    if (!is_colour_) {
+      channel_step_ = std::clamp<std::size_t>((values_->values.size() + most_points_ - 1) / most_points_, 1, count);
+      for (std::size_t c = 0; c < count; c += channel_step_)
+        brdf_.channels.push_back(channel_at(wavelengths_->values[c]));
+    }
+    if (channel_step_ > 1)
+      brdf_.metadata.remarks.emplace_back(
+          "left out", fmt::format("{} of {} wavelengths: the file has {} values, of which {} are read at most",
+                                  count - brdf_.channels.size(), count, values_->values.size(), most_points_));
     const auto text = tensors_.find("description");
     if (text == tensors_.end()) return;
     for (const double c : text->second.values)
@@ -163,10 +172,10 @@ class RglReader {
                     .theta_r_deg = in_degrees(r.theta()),
                     .phi_r_deg = plain_azimuth_deg(in_degrees(r.phi()))};
     for (std::size_t c = 0; c < brdf_.channels.size(); ++c) {
-      if (brdf_.points.size() == kMostPoints)
-        return failure(error("spectra", "more points", fmt::format("{}", kMostPoints)));
+      if (brdf_.points.size() == most_points_)
+        return failure(error("spectra", "more points", fmt::format("{}", most_points_)));
       point.channel = static_cast<std::uint32_t>(c);
-      point.f_per_sr = slice(*values_, first * brdf_.channels.size() + c)[node] * scale / out.z;
+      point.f_per_sr = slice(*values_, first * values_->shape[2] + c * channel_step_)[node] * scale / out.z;
       brdf_.points.push_back(point);
     }
     return {};
@@ -174,6 +183,7 @@ class RglReader {
 
   Tensors tensors_;
   std::string file_;
+  std::size_t most_points_;
   const Tensor* theta_i_ = nullptr;
   const Tensor* phi_i_ = nullptr;
   const Tensor* ndf_ = nullptr;
@@ -183,15 +193,16 @@ class RglReader {
   const Tensor* wavelengths_ = nullptr;
   bool is_colour_ = false;
   bool is_isotropic_ = false;
+  std::size_t channel_step_ = 1;  ///< between the wavelengths that are read
   MeasuredBrdf brdf_;
 };
 
 }  // namespace
 
-Result<MeasuredBrdf> read_rgl(std::string_view bytes, const std::string& file) {
+Result<MeasuredBrdf> read_rgl(std::string_view bytes, const std::string& file, std::size_t most_points) {
   Result<Tensors> tensors = read_tensors(bytes, file);
   if (!tensors) return failure(tensors.error());
-  return RglReader(*std::move(tensors), file).read();
+  return RglReader(*std::move(tensors), file, most_points).read();
 }
 
 }  // namespace gonio::formats

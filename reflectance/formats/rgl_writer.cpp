@@ -9,11 +9,13 @@
 #include "reflectance/formats/rgl_file.h"
 #include "reflectance/formats/tensor_file.h"
 #include "reflectance/formats/text_lines.h"
+#include "reflectance/table/tabulated_surface.h"
 
 namespace gonio::formats {
 namespace {
 
 using reflectance::Direction;
+using reflectance::TabulatedSurface;
 using reflectance::Vector;
 
 constexpr double kPi = std::numbers::pi;
@@ -65,6 +67,32 @@ std::vector<const ChannelSurface*> channels_to_write(const SurfaceFile& file, Lo
   return chosen;
 }
 
+// Steps, and the incidences of measured tables in place of those beside them.
+std::vector<double> incidences_of(const std::vector<const ChannelSurface*>& channels, double step_deg) {
+  constexpr double kLowestDeg = 88.0;
+  std::vector<double> measured;
+  for (const ChannelSurface* one : channels) {
+    const auto* table = one->surface.as<TabulatedSurface>();
+    if (table == nullptr) continue;
+    for (const reflectance::TableRow& row : table->rows()) {
+      if (row.theta_i() <= degrees(kLowestDeg)) measured.push_back(row.theta_i().si());
+    }
+  }
+  std::vector<double> incidences = measured;
+  for (double step = 0.0; step <= kLowestDeg; step += step_deg) {
+    const double theta = degrees(step).si();
+    const double half_step = 0.5 * degrees(step_deg).si();
+    const bool is_beside = std::ranges::any_of(measured, [&](double m) { return std::abs(m - theta) < half_step; });
+    if (!is_beside || step == 0.0) incidences.push_back(theta);
+  }
+  std::ranges::sort(incidences);
+  constexpr double kOneIncidence = 1e-5;  // rad; an encoder's scatter, another channel's
+  const auto again =
+      std::unique(incidences.begin(), incidences.end(), [](double a, double b) { return b - a < kOneIncidence; });
+  incidences.erase(again, incidences.end());
+  return incidences;
+}
+
 Result<void> check_rgl(const RglOptions& options) {
   constexpr std::size_t kMostNodes = 512;
   const bool is_good = options.nodes >= 2 && options.nodes <= kMostNodes && options.incidence_step_deg >= 0.5 &&
@@ -104,7 +132,6 @@ Tables tables_of(const std::vector<const ChannelSurface*>& channels, const std::
 }  // namespace
 
 Result<Export> write_rgl(const SurfaceFile& file, const RglOptions& options) {
-  constexpr double kLowest = 88.0;
   constexpr double kNominal = 550.0;
   GONIO_TRY(check(file, "an RGL file"));
   GONIO_TRY(check_rgl(options));
@@ -116,9 +143,7 @@ Result<Export> write_rgl(const SurfaceFile& file, const RglOptions& options) {
                     .seen = "no channel with a wavelength",
                     .limit = "at least one"});
   for (const ChannelSurface* one : channels) add_anisotropy_loss(written.losses, one->surface);
-  std::vector<double> incidences;
-  for (double theta = 0.0; theta <= kLowest; theta += options.incidence_step_deg)
-    incidences.push_back(degrees(theta).si());
+  const std::vector<double> incidences = incidences_of(channels, options.incidence_step_deg);
   Tables tables = tables_of(channels, incidences, options.nodes, written.losses);
   add_loss(written.losses, LossKind::Precision, tables.spectra.size(), "values are floats of f_r mu_r, 7 digits");
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "reflectance/formats/byte_io.h"
-#include "reflectance/formats/measured_brdf.h"
 
 namespace gonio::formats {
 namespace {
@@ -15,6 +14,7 @@ constexpr std::uint8_t kTensorBytes = 1;
 constexpr std::uint8_t kTensorFloats = 10;
 constexpr std::uint8_t kTensorDoubles = 11;
 constexpr std::size_t kTensorAlignment = 8;
+constexpr std::size_t kMostTensorValues = 128'000'000;  // 1 GB as doubles
 
 std::size_t size_of_kind(std::uint8_t kind) {
   if (kind == kTensorBytes) return 1;
@@ -36,9 +36,9 @@ Result<std::vector<std::size_t>> read_shape(ByteReader& bytes, const std::string
     const Result<std::uint64_t> length = bytes.number<std::uint64_t>("shape of " + name);
     if (!length) return failure(length.error());
     // Each factor first: their product must not wrap.
-    if (*length > kMostPoints || count * *length > kMostPoints)
+    if (*length > kMostTensorValues || count * *length > kMostTensorValues)
       return failure(bytes.error("shape of " + name, fmt::format("{} along axis {}", *length, n),
-                                 fmt::format("{} values in all", kMostPoints)));
+                                 fmt::format("{} values in all", kMostTensorValues)));
     shape.push_back(*length);
     count *= *length;
   }

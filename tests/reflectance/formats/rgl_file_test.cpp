@@ -121,26 +121,29 @@ TEST(RglFile, OfAFormulaIsReadByASecondReader) {
 TEST(RglFile, HoldsABrightReadingWhereItWas) {
   for (const MeasuredBrdf& brdf : {bright_retro(), bright_aside()}) {
     const BrdfPoint& bright = brightest(brdf);
-    const Result<Export> written = write_rgl(surfaces_of(brdf).value(), {.nodes = 96, .incidence_step_deg = 10.0});
+    const Result<Export> written = write_rgl(surfaces_of(brdf).value(), {.incidence_step_deg = 44.0});
     const std::map<std::string, RglField> fields = rgl_fields(bytes_of(written, ".bsdf"));
+    const std::size_t lit_from_30 = 2;  // 0, 15, 30: incidences that were measured are kept, whatever the step
+    ASSERT_NEAR(fields.at("theta_i").floats.at(lit_from_30), 30.0 * kDegree, 1e-6);
     double most = 0.0;
     double theta = 0.0;
     double phi = 0.0;
     for (double theta_o = 1.0; theta_o < 80.0; theta_o += 1.0) {
       for (double phi_o = 0.0; phi_o < 360.0; phi_o += 2.0) {
-        const double f = f_mu(fields, 3, theta_o * kDegree, phi_o * kDegree) / std::cos(theta_o * kDegree);
+        const double f = f_mu(fields, lit_from_30, theta_o * kDegree, phi_o * kDegree) / std::cos(theta_o * kDegree);
         if (f <= most) continue;
         most = f;
         theta = theta_o;
         phi = phi_o;
       }
     }
-    EXPECT_GT(most, 2.5);
-    EXPECT_LT(degrees_from_view({.theta_r_deg = theta, .phi_r_deg = phi}, bright.theta_r_deg, bright.phi_r_deg), 3.0);
+    EXPECT_NEAR(most, 5.0, 0.75);
+    EXPECT_LT(degrees_from_view({.theta_r_deg = theta, .phi_r_deg = phi}, bright.theta_r_deg, bright.phi_r_deg), 2.1);
     const Result<MeasuredBrdf> read = read_rgl(bytes_of(written, ".bsdf"), "x.bsdf");
     ASSERT_TRUE(read) << describe(read.error());
     EXPECT_NEAR(brightest(*read).theta_i_deg, 30.0, 1e-5);
-    EXPECT_LT(degrees_from_view(brightest(*read), bright.theta_r_deg, bright.phi_r_deg), 5.0);
+    EXPECT_NEAR(brightest(*read).f_per_sr, 5.0, 0.5);
+    EXPECT_LT(degrees_from_view(brightest(*read), bright.theta_r_deg, bright.phi_r_deg), 2.1);
     EXPECT_TRUE(has_loss(written->losses, LossKind::Precision));
   }
 }
@@ -186,6 +189,24 @@ TEST(RglFile, OfOthersIsReadThroughTheWarpOfItsNormals) {
   EXPECT_NEAR(read->points[3].theta_r_deg, 45.0, 1e-9);
   // f mu = 0.25 * 8 / (4 * 0.5)
   EXPECT_NEAR(read->points[3].f_per_sr, 1.0 / std::cos(45.0 * kDegree), 1e-9);
+}
+
+TEST(RglFile, OfMoreValuesThanAreReadLeavesOutWavelengthsEvenly) {
+  SurfaceFile file;
+  for (const double wavelength : {400.0, 500.0, 600.0, 700.0, 800.0})
+    file.channels.push_back({.channel = channel_at(wavelength), .surface = reflectance::wheat()});
+  const std::string bytes = bytes_of(write_rgl(file, {.nodes = 8, .incidence_step_deg = 44.0}), ".bsdf");
+  const std::size_t of_one = 3 * 8 * 8;
+
+  const Result<MeasuredBrdf> read = read_rgl(bytes, "wheat.bsdf", 3 * of_one);
+
+  ASSERT_TRUE(read) << describe(read.error());
+  ASSERT_EQ(read->channels.size(), 3u) << "every second";
+  EXPECT_EQ(read->channels[1].wavelength_nm, 600.0);
+  ASSERT_FALSE(read->metadata.remarks.empty());
+  EXPECT_THAT(read->metadata.remarks.back().second, HasSubstr("2 of 5 wavelengths"));
+  EXPECT_EQ(read->points.size(), 3 * read_rgl(bytes, "wheat.bsdf")->points.size() / 5);
+  EXPECT_THAT(describe(read_rgl(bytes, "wheat.bsdf", 10).error()), HasSubstr("more points"));
 }
 
 TEST(RglFile, SaysWhereABadOneIsBad) {
