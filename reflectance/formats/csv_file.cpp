@@ -50,10 +50,7 @@ class CsvReader {
 
   Result<MeasuredBrdf> read() {
     GONIO_TRY(read_names());
-    while (const std::optional<std::string_view> line = lines_.next()) {
-      if (line->empty() && lines_.bytes_left() == 0) break;
-      GONIO_TRY(read_row(*line));
-    }
+    while (const std::optional<std::string_view> line = lines_.next_filled()) GONIO_TRY(read_row(*line));
     if (!lines_.line_was_ended()) return failure(lines_.error("", "the last line has no end", "a whole file"));
     if (sidecar_ != nullptr && brdf_.points.size() != sidecar_->points)
       return failure(lines_.error("", fmt::format("{} points", brdf_.points.size()),
@@ -65,7 +62,7 @@ class CsvReader {
 
  private:
   Result<void> read_names() {
-    const std::optional<std::string_view> line = lines_.next();
+    const std::optional<std::string_view> line = lines_.next_filled();
     if (!line) return failure(lines_.error("", "an empty file", "a row of column names"));
     for (const std::string_view cell : split(*line, ',')) {
       const std::string name(trimmed(cell));

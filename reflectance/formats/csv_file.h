@@ -16,7 +16,8 @@ namespace gonio::formats {
 /// Errors: as `check`; InvalidInput for a flag's name with a comma or '|' in it.
 [[nodiscard]] Result<Export> write_csv(const MeasuredBrdf& brdf);
 
-/// Columns in any order; those of a foreign CSV need their names changed to these. Without a sidecar the channels are
+/// Columns in any order; those of a foreign CSV need their names changed to these. Blank lines, and lines that begin
+/// with '#', are passed over. Without a sidecar the channels are
 /// the wavelengths, and each flag's name is taken as it comes. Errors: InvalidInput with line and column: no such
 /// column, a missing one, too few or too many cells, no finite number, a last line without its end, another number of
 /// points than the sidecar says.

@@ -41,6 +41,16 @@ constexpr std::string_view kHdf5Start = "\x89HDF\r\n\x1a\n";
 constexpr std::string_view kTensorStart{"tensor_file\0", 12};
 constexpr std::string_view kMerlStart{"\x5A\0\0\0\x5A\0\0\0\xB4\0\0\0", 12};  // 90, 90, 180
 
+// Editors put it before UTF-8 text; no format knows it.
+std::string_view without_byte_order_mark(std::string_view bytes) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return bytes.starts_with(kMark) ? bytes.substr(kMark.size()) : bytes;
+}
+
+bool is_utf16(std::string_view bytes) {
+  return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
+}
+
 bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
@@ -49,7 +59,8 @@ std::optional<Format> detect_text(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return std::nullopt;
   const std::string_view line = text.substr(first, text.find('\n', first) - first);
-  if (has(line, "theta_i_deg") && has(line, "f_per_sr")) return Format::Csv;
+  const std::string_view names = TextLines(text, "CSV", "").next_filled().value_or("");  // below comments
+  if (has(names, "theta_i_deg") && has(names, "f_per_sr")) return Format::Csv;
   if (text[first] == '{')
     return has(text, "\"metadata\"") && has(text, "\"BRDF\"") ? std::optional(Format::Bird) : std::nullopt;
   if (text[first] == '<') return has(text, "<WindowElement") ? std::optional(Format::Klems) : std::nullopt;
@@ -93,6 +104,7 @@ bool is_writable(Format format) {
 
 std::optional<Format> detect_format(std::string_view bytes) {
   constexpr std::size_t kHeader = 65536;  // no header of the texts is longer; BiRD's keys may stand in any order
+  bytes = without_byte_order_mark(bytes);
   if (bytes.starts_with(kHdf5Start)) return Format::Nexus;
   if (bytes.starts_with(kTensorStart)) return Format::Rgl;
   if (bytes.starts_with(kMerlStart)) return Format::Merl;
@@ -103,8 +115,10 @@ std::optional<Format> detect_format(std::string_view bytes) {
 Result<MeasuredBrdf> read_brdf(std::string_view bytes, const std::string& file,
                                std::optional<std::string_view> sidecar) {
   const std::optional<Format> format = detect_format(bytes);
+  if (!format && is_utf16(bytes)) return failure(unknown_format(file, "UTF-16 text; save it as UTF-8"));
   if (!format)
     return failure(unknown_format(file, bytes.empty() ? "an empty file" : "none of the formats that are known"));
+  bytes = without_byte_order_mark(bytes);
   switch (*format) {
     case Format::Csv:
       return read_csv(bytes, sidecar, file);

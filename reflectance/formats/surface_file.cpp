@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "reflectance/formats/writer_losses.h"
-#include "reflectance/table/tabulated_surface.h"
+#include "reflectance/table/table_of_readings.h"
 
 namespace gonio::formats {
 
@@ -30,14 +30,14 @@ std::vector<TableReading> readings_of(const MeasuredBrdf& brdf, std::size_t chan
 
 }  // namespace
 
-Result<SurfaceFile> surfaces_of(const MeasuredBrdf& brdf) {
+Result<SurfaceFile> surfaces_of(const MeasuredBrdf& brdf, reflectance::TableOptions options) {
   GONIO_TRY(check(brdf, brdf.metadata.sample));
   SurfaceFile file{.metadata = brdf.metadata, .channels = {}, .losses = losses_of_bare_values(brdf)};
-  const reflectance::TableOptions options{.symmetry = symmetry_of(brdf)};
+  options.symmetry = symmetry_of(brdf);
   for (std::size_t n = 0; n < brdf.channels.size(); ++n) {
     const std::vector<TableReading> readings = readings_of(brdf, n);
     if (readings.empty()) continue;
-    Result<TabulatedSurface> table = TabulatedSurface::make(readings, options);
+    Result<TabulatedSurface> table = reflectance::table_of_readings(readings, options);
     if (!table) {
       Error error = std::move(table).error();
       error.tried = fmt::format("make a surface of channel {}: {}", brdf.channels[n].name, error.tried);

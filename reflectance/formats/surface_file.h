@@ -8,6 +8,7 @@
 #include "reflectance/formats/loss.h"
 #include "reflectance/formats/measured_brdf.h"
 #include "reflectance/surface/surface.h"
+#include "reflectance/table/table_options.h"
 
 namespace gonio::formats {
 
@@ -24,10 +25,10 @@ struct SurfaceFile {
   Losses losses;
 };
 
-/// A table of each channel's points, by `symmetry_of`; no flag, uncertainty or polarisation goes with it. Errors: as
-/// `check`, as TabulatedSurface::make (fewer than two directions, all of an incidence's on one line), naming the
-/// channel.
-[[nodiscard]] Result<SurfaceFile> surfaces_of(const MeasuredBrdf& brdf);
+/// A table of each channel's points, by `symmetry_of`, which overrules that of `options`, as is the layout; no flag,
+/// uncertainty or polarisation goes with it. Errors: as `check`, as table_of_readings (fewer than two directions, an
+/// incidence for each point as in tables of half and difference angles), naming the channel.
+[[nodiscard]] Result<SurfaceFile> surfaces_of(const MeasuredBrdf& brdf, reflectance::TableOptions options = {});
 
 /// Values read off a surface at a format's own directions, and how many of them were negative or not measured.
 class GridReader {

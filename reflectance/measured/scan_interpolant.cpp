@@ -6,16 +6,10 @@
 #include <fmt/format.h>
 
 #include "reflectance/table/cross_validation.h"
+#include "reflectance/table/table_of_readings.h"
 
 namespace gonio::reflectance {
 namespace {
-
-Result<TabulatedSurface> table_of(std::span<const TableReading> readings, TableOptions options) {
-  Result<TabulatedSurface> table = TabulatedSurface::make(readings, options);
-  if (table || options.layout == TableLayout::Rings) return table;
-  options.layout = TableLayout::Rings;  // all of an incidence's in one plane
-  return TabulatedSurface::make(readings, options);
-}
 
 // A thousandth of the guide's mean over the readings.
 double floor_under(const Surface& guide, const MeasuredScan& scan, std::span<const std::size_t> usable) {
@@ -51,7 +45,7 @@ Result<ScanInterpolant> ScanInterpolant::make(const MeasuredScan& scan, const Gu
     point.push_back(static_cast<std::uint32_t>(k));
     readings.push_back({.geometry = geometry_of(i, r), .f = {p.value / g, standard_u(p) / g}});
   }
-  Result<TabulatedSurface> table = table_of(readings, options);
+  Result<TabulatedSurface> table = table_of_readings(readings, options);
   if (!table) return failure(std::move(table).error());
   return ScanInterpolant(guide, floor, *std::move(table), std::move(point), std::move(per_guide));
 }

@@ -82,7 +82,8 @@ Vector placed(const Direction& i, const Direction& r, const TableOptions& option
   return {.x = r.sin_theta() * std::cos(turn), .y = is_folded ? std::abs(y) : y, .z = r.mu()};
 }
 
-std::vector<Group> by_incidence(std::span<const TableReading> readings, const TableOptions& options) {
+Result<std::vector<Group>> by_incidence(std::span<const TableReading> readings, const TableOptions& options) {
+  constexpr std::size_t kMostIncidences = 4096;
   std::vector<Group> groups;
   std::size_t last = 0;
   for (std::size_t k = 0; k < readings.size(); ++k) {
@@ -94,6 +95,10 @@ std::vector<Group> by_incidence(std::span<const TableReading> readings, const Ta
                                       [&](const Group& g) { return is_same_incidence(g.i, i, options); });
       last = static_cast<std::size_t>(known - groups.begin());
       if (known == groups.end()) groups.push_back({.i = i, .readings = {}});
+      if (groups.size() > kMostIncidences)
+        return failure(
+            refusal(fmt::format("{} incidences in the first {} of {} readings", groups.size(), k + 1, readings.size()),
+                    fmt::format("{} incidences, with many views each", kMostIncidences)));
     }
     groups[last].readings.push_back(
         {.r = placed(i, r, options), .reading = &reading, .index = static_cast<std::uint32_t>(k)});
@@ -128,7 +133,9 @@ Result<TabulatedSurface> TabulatedSurface::make(std::span<const TableReading> re
   for (std::size_t k = 0; k < readings.size(); ++k) GONIO_TRY(check_reading(k, readings[k]));
   TableReport report{.readings = readings.size()};
   std::vector<TableRow> rows;
-  for (const Group& group : by_incidence(readings, options)) {
+  const Result<std::vector<Group>> groups = by_incidence(readings, options);
+  if (!groups) return failure(groups.error());
+  for (const Group& group : *groups) {
     Result<TableRow> row = row_of(group, options, report);
     if (!row) return failure(std::move(row).error());
     rows.push_back(std::move(*row));

@@ -38,8 +38,8 @@ class TabulatedSurface {
 
   /// Errors: InvalidInput, naming the reading's index (from 0) and field, or the option: no readings, fewer than two
   /// directions, a theta outside of [0, 90 deg], an azimuth, value or uncertainty that is not finite, a negative
-  /// uncertainty, scattered directions of an incidence on one line (declare rings), an option out of its range.
-  /// 7e3 scattered readings take some 20 ms.
+  /// uncertainty, scattered directions of an incidence on one line (declare rings), more than 4096 incidences, an
+  /// option out of its range. 7e3 scattered readings take some 20 ms.
   [[nodiscard]] static Result<TabulatedSurface> make(std::span<const TableReading> readings,
                                                      const TableOptions& options);
 

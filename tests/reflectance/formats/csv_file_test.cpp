@@ -97,6 +97,18 @@ TEST(CsvFile, OfOthersNeedsOnlyTheFiveColumns) {
   EXPECT_EQ(read->flag_names, (std::vector<std::string>{"weak", "odd"}));
 }
 
+TEST(CsvFile, OfOthersMayHaveCommentsAndBlankLines) {
+  const std::string csv =
+      "# goniometer of another laboratory\r\n\r\ntheta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_per_sr\r\n"
+      "10,0,20,0,1\r\n\r\n# lamp changed\r\n10,0,20,180,2\r\n  \r\n";
+
+  const Result<MeasuredBrdf> read = read_csv(csv, std::nullopt, "theirs.csv");
+
+  ASSERT_TRUE(read) << describe(read.error());
+  EXPECT_EQ(read->points.size(), 2u);
+  EXPECT_EQ(read->points[1].f_per_sr, 2.0);
+}
+
 struct BadCsv {
   std::string csv;
   int line;

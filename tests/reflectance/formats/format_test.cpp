@@ -21,7 +21,9 @@ namespace {
 
 using testing::HasSubstr;
 
-std::vector<std::pair<Format, std::string>> one_of_each() {
+using FileOfFormat = std::pair<Format, std::string>;
+
+std::vector<FileOfFormat> make_one_of_each() {
   const MeasuredBrdf brdf = bright_retro();
   SurfaceFile file;
   file.channels.push_back({.channel = channel_at(550.0), .surface = reflectance::wheat()});
@@ -38,6 +40,11 @@ std::vector<std::pair<Format, std::string>> one_of_each() {
           {Format::Nexus, bytes_of(write_nexus(brdf), ".nxs")}};
 }
 
+const std::vector<FileOfFormat>& one_of_each() {
+  static const std::vector<FileOfFormat> kFiles = make_one_of_each();  // MERL's has a million values
+  return kFiles;
+}
+
 TEST(Format, IsKnownByWhatStandsInTheFile) {
   for (const auto& [format, bytes] : one_of_each()) {
     SCOPED_TRACE(format_name(format));
@@ -51,6 +58,21 @@ TEST(Format, IsKnownByWhatStandsInTheFile) {
     }
   }
   EXPECT_FALSE(is_writable(Format::Alta));
+}
+
+TEST(Format, OfATextIsKnownBehindAByteOrderMarkAndComments) {
+  const std::string csv = "# by hand\r\ntheta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_per_sr\r\n10,0,20,0,1\r\n";
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(detect_format(mark + csv), Format::Csv);
+  EXPECT_TRUE(read_brdf(mark + csv, "theirs.csv"));
+  for (const auto& [format, bytes] : one_of_each()) {
+    const bool is_text = format != Format::Merl && format != Format::Rgl && format != Format::Nexus;
+    if (!is_text || !is_readable(format)) continue;
+    EXPECT_EQ(detect_format(mark + bytes), format);
+    EXPECT_TRUE(read_brdf(mark + bytes, "theirs")) << format_name(format);
+  }
+  const Result<MeasuredBrdf> wide = read_brdf("\xFF\xFEt", "theirs.csv");
+  EXPECT_THAT(describe(wide.error()), HasSubstr("UTF-16"));
 }
 
 TEST(Format, ThatIsNoneHasItsWord) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "reflectance/table/detect_feature.h"
+#include "reflectance/table/table_of_readings.h"
 #include "tests/reflectance/generated.h"
 #include "tests/reflectance/surfaces.h"
 #include "tests/reflectance/table/tables.h"
@@ -412,6 +413,25 @@ TEST(TabulatedSurface, WantsRingsForReadingsInOnePlane) {
   const Direction i = direction_deg(30.0, 0.0);
   EXPECT_TRUE(t.covers(i, direction_deg(41.0, 180.0)) || t.extrapolated_share(i) > 0.5);
   EXPECT_FALSE(t.covers(i, direction_deg(41.0, 90.0)));
+
+  const auto found = table_of_readings(readings, {});
+  ASSERT_TRUE(found.has_value()) << describe(found.error());
+  EXPECT_EQ(found->options().layout, TableLayout::Rings);
+  EXPECT_EQ(table_of_readings(wheat_grid({30.0}), {})->options().layout, TableLayout::Scattered);
+}
+
+// A table in half and difference angles has an incidence for each of its million values.
+TEST(TabulatedSurface, RefusesAnIncidenceForEachReadingWithoutLookingAtAllOfThem) {
+  Readings readings;
+  for (int k = 0; k < 100'000; ++k) {
+    const Direction i = direction_deg(80.0 * static_cast<double>(k) / 100'000.0, 0.0);
+    readings.push_back(reading_of(wheat(), i, direction_deg(20.0, 90.0)));
+  }
+
+  const auto made = TabulatedSurface::make(readings, {.same_direction = degrees(1e-4)});
+
+  ASSERT_FALSE(made.has_value());
+  EXPECT_NE(made.error().seen.find("4097 incidences in the first 4097 of 100000"), std::string::npos);
 }
 
 }  // namespace
