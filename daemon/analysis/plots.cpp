@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/analysis/budget_summary.h"
+#include "daemon/analysis/drawn_surfaces.h"
 #include "daemon/analysis/plot_directions.h"
 #include "daemon/analysis/plot_scan.h"
 #include "reflectance/formats/surface_file.h"
@@ -42,7 +43,7 @@ const reflectance::Surface* surface_of(const Result<formats::SurfaceFile>& surfa
 
 std::vector<Picture> pictures_of(const formats::MeasuredBrdf& brdf, const std::string& stem,
                                  std::vector<std::string>& notes) {
-  const Result<formats::SurfaceFile> surfaces = formats::surfaces_of(brdf);
+  const Result<formats::SurfaceFile> surfaces = drawn_surfaces(brdf);
   if (!surfaces) notes.push_back("no surface between the readings: " + describe(surfaces.error()));
   std::vector<Picture> pictures;
   for (const std::uint32_t channel : shown_channels(brdf, notes)) {
