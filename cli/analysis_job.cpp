@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <ostream>
 
-#include "cli/files.h"
+#include "base/write_file.h"
 #include "cli/output.h"
 
 namespace gonio::cli {
@@ -89,7 +89,7 @@ Result<std::vector<std::string>> take_files(DaemonClient& client, const api::Ana
       continue;
     }
     const std::string name = name_here(file.name, stem, output == "-" ? "" : output, job.files.size() == 1);
-    GONIO_TRY(write_text(name, *bytes));
+    GONIO_TRY(write_file(name, *bytes));
     written.push_back(name);
   }
   return written;

@@ -1,11 +1,8 @@
 #include "cli/analysis_program.h"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 
+#include "cli/sibling_program.h"
 #include "protocol/api/json.h"
 
 namespace gonio::cli {
@@ -19,7 +16,7 @@ std::vector<std::string> analysis_command(const FileJob& job, const std::string&
       job.output.empty() ? fs::path(fs::path(job.file).stem().string() + "-" + what + ".x") : fs::path(job.output);
   const std::string folder = output.parent_path().empty() ? "." : output.parent_path().string();
   std::vector<std::string> command{
-      (fs::path(own_path).parent_path() / "gonio-analyse").string(),
+      sibling_program("gonio-analyse", own_path),
       "--file",
       job.file,
       "--into",
@@ -33,18 +30,7 @@ std::vector<std::string> analysis_command(const FileJob& job, const std::string&
 }
 
 Error become_analysis(const FileJob& job) {
-  std::error_code ignored;
-  const std::vector<std::string> command = analysis_command(job, fs::read_symlink("/proc/self/exe", ignored).string());
-  std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  execv(words[0], words.data());
-  return {.code = ErrorCode::FileUnreadable,
-          .device = "gonioctl",
-          .tried = "start gonio-analyse",
-          .seen = std::strerror(errno),
-          .limit = {},
-          .where = InputLocation{command[0], 0, {}}};
+  return become_program(analysis_command(job, own_program()), "start gonio-analyse");
 }
 
 }  // namespace gonio::cli

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/read_file.h"
 #include "base/toml_reader.h"
-#include "cli/files.h"
 
 namespace gonio::cli {
 
@@ -29,11 +29,11 @@ std::vector<std::string> files_named_in(const std::string& plan, const std::stri
 }  // namespace
 
 Result<api::PlanSubmission> read_plan(const std::string& path) {
-  Result<std::string> plan = read_text(path);
+  Result<std::string> plan = read_file(path);
   if (!plan) return failure(plan.error());
   api::PlanSubmission submission{.plan = std::move(*plan), .plan_file = path, .parts = {}};
   for (const std::string& name : files_named_in(submission.plan, path)) {
-    Result<std::string> text = read_text((std::filesystem::path(path).parent_path() / name).string());
+    Result<std::string> text = read_file((std::filesystem::path(path).parent_path() / name).string());
     if (!text) return failure(text.error());
     submission.parts.emplace(name, std::move(*text));
   }

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "cli/files.h"
+#include "base/read_file.h"
 
 namespace gonio::cli {
 
 Result<api::ReferenceImport> read_reference(const std::string& file, const std::string& shape_file,
                                             const std::string& shape_of, bool replace) {
-  Result<std::string> text = read_text(file);
+  Result<std::string> text = read_file(file);
   if (!text) return failure(text.error());
   api::ReferenceImport request{.text = std::move(*text),
                                .file = file,
@@ -17,7 +17,7 @@ Result<api::ReferenceImport> read_reference(const std::string& file, const std::
                                .shape_of = shape_of,
                                .replace = replace};
   if (shape_file.empty()) return request;
-  Result<std::string> shape = read_text(shape_file);
+  Result<std::string> shape = read_file(shape_file);
   if (!shape) return failure(shape.error());
   request.shape = std::move(*shape);
   return request;

@@ -7,13 +7,13 @@
 #include <ostream>
 
 #include "base/clock.h"
+#include "base/write_file.h"
 #include "cli/analysis_job.h"
 #include "cli/analysis_program.h"
 #include "cli/calibration_views.h"
 #include "cli/daemon_client.h"
 #include "cli/doctor/doctor.h"
 #include "cli/doctor/findings_view.h"
-#include "cli/files.h"
 #include "cli/invocation.h"
 #include "cli/plan_files.h"
 #include "cli/reference_files.h"
@@ -419,7 +419,7 @@ class Runner {
       world_.out << *csv;
       return 0;
     }
-    GONIO_TRY(write_text(wanted_.file, *csv));
+    GONIO_TRY(write_file(wanted_.file, *csv));
     world_.err << "scan " << wanted_.scan << " written to " << wanted_.file << '\n';
     return 0;
   }

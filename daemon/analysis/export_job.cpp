@@ -11,7 +11,7 @@
 #include "reflectance/formats/rgl_file.h"
 #include "reflectance/formats/ssdd_file.h"
 #include "reflectance/formats/surface_file.h"
-#include "reflectance/formats/write_aside.h"
+#include "reflectance/formats/write_export.h"
 #include "reflectance/formats/zemax_file.h"
 
 namespace gonio::analysis {

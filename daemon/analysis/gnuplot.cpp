@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
+#include "base/write_file.h"
 #include "daemon/analysis/worker_process.h"
-#include "reflectance/formats/write_aside.h"
 
 namespace gonio::analysis {
 namespace {
@@ -88,10 +88,10 @@ Result<std::vector<api::AnalysisFile>> draw(const std::string& folder, const std
   const std::string base = stem + "-" + picture.name;
   std::vector<std::string> names{base + ".png", base + ".svg"};
   for (const auto& [name, text] : picture.tables) {
-    GONIO_TRY(formats::write_aside(folder + "/" + name, text));
+    GONIO_TRY(write_file(folder + "/" + name, text));
     names.push_back(name);
   }
-  GONIO_TRY(formats::write_aside(folder + "/" + base + ".gnuplot", with_header(base, picture)));
+  GONIO_TRY(write_file(folder + "/" + base + ".gnuplot", with_header(base, picture)));
   names.push_back(base + ".gnuplot");
   for (const char* kind : {"png", "svg"}) GONIO_TRY(draw_one(folder, base, kind, picture));
   std::vector<api::AnalysisFile> files;

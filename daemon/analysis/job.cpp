@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/read_file.h"
+#include "base/write_file.h"
 #include "daemon/analysis/describe.h"
 #include "daemon/analysis/export_job.h"
 #include "daemon/analysis/fit_job.h"
@@ -18,7 +19,6 @@
 #include "daemon/analysis/trace.h"
 #include "daemon/app/calibration_desk.h"
 #include "reflectance/formats/scan_of_file.h"
-#include "reflectance/formats/write_aside.h"
 
 namespace gonio::analysis {
 namespace {
@@ -203,7 +203,7 @@ Result<AnalysisReport> run_report(const JobInput& input, Progress& progress) {
                                         .notes = notes,
                                         .made_utc = iso8601(SystemClock().utc_now())});
   const std::string name = input.name + "-report.html";
-  GONIO_TRY(formats::write_aside(input.folder + "/" + name, page));
+  GONIO_TRY(write_file(input.folder + "/" + name, page));
   AnalysisReport report;
   report.files = {{.name = name, .bytes = std::ssize(page)}};
   report.notes = notes;
@@ -251,7 +251,7 @@ Result<AnalysisReport> run_fit(const JobInput& input, Progress& progress) {
     }
     report.notes.insert(report.notes.end(), told->notes.begin(), told->notes.end());
     if (!told->scene.empty()) {
-      GONIO_TRY(formats::write_aside(input.folder + "/" + stem + ".toml", told->scene));
+      GONIO_TRY(write_file(input.folder + "/" + stem + ".toml", told->scene));
       report.files.push_back({.name = stem + ".toml", .bytes = std::ssize(told->scene)});
     }
     const Result<std::vector<api::AnalysisFile>> drawn = draw(input.folder, stem, told->residuals);
@@ -280,7 +280,7 @@ Result<AnalysisReport> run_compare(const JobInput& input, Progress& progress) {
   AnalysisReport report;
   report.facts = told->facts;
   const std::string name = fmt::format("{}-against-{}.csv", input.name, input.request.other_scan);
-  GONIO_TRY(formats::write_aside(input.folder + "/" + name, told->table));
+  GONIO_TRY(write_file(input.folder + "/" + name, told->table));
   report.files = {{.name = name, .bytes = std::ssize(told->table)}};
   return report;
 }
@@ -301,7 +301,7 @@ Result<AnalysisReport> run_trace(const JobInput& input, Progress& progress) {
   if (!text) return failure(text.error());
   AnalysisReport report;
   const std::string name = fmt::format("{}-point-{}.txt", input.name, point);
-  GONIO_TRY(formats::write_aside(input.folder + "/" + name, *text));
+  GONIO_TRY(write_file(input.folder + "/" + name, *text));
   report.files = {{.name = name, .bytes = std::ssize(*text)}};
   return report;
 }

@@ -1,15 +1,10 @@
 #include "daemon/app/reference_shelf.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+
+#include "base/read_file.h"
+#include "base/write_file.h"
 
 namespace gonio::daemon {
 namespace {
@@ -17,22 +12,15 @@ namespace {
 namespace fs = std::filesystem;
 
 ShelfEntry read_entry(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in.good() && !in.eof()) {
-    return {file,
-            {},
-            failure({.code = ErrorCode::FileUnreadable,
-                     .tried = "open the reference standard's file",
-                     .seen = "it may not be read",
-                     .where = InputLocation{file, 0, ""}})};
-  }
+  const Result<std::string> bytes = read_file(file);
+  if (!bytes) return {file, {}, failure(bytes.error())};
+  const std::string& text = *bytes;
   Result<calibration::ReferenceStandard> standard = calibration::ReferenceStandard::parse(text, file);
-  if (!standard) return {file, std::move(text), std::move(standard)};
+  if (!standard) return {file, text, std::move(standard)};
   calibration::ShapeReport shape = calibration::check_shape(*standard);
   const Result<void> consistent = calibration::demand_consistency(*standard, shape);
   if (!consistent) standard = failure(consistent.error());
-  return {file, std::move(text), std::move(standard), std::move(shape)};
+  return {file, text, std::move(standard), std::move(shape)};
 }
 
 Error not_put(ErrorCode code, const std::string& serial, std::string seen, std::string limit) {
@@ -50,49 +38,6 @@ bool is_file_name(const std::string& serial) {
            c == '.';
   });
   return !serial.empty() && serial.size() <= kLongest && serial.front() != '.' && is_plain;
-}
-
-// 0, or errno.
-int write_durably(const std::string& path, const std::string& text) {
-  constexpr mode_t kMode = 0644;
-  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
-  if (fd < 0) return errno;
-  int reason = 0;
-  for (std::size_t done = 0; done < text.size() && reason == 0;) {
-    const ssize_t n = write(fd, text.data() + done, text.size() - done);
-    if (n > 0) {
-      done += static_cast<std::size_t>(n);
-    } else if (n == 0 || errno != EINTR) {
-      reason = n == 0 ? EIO : errno;
-    }
-  }
-  if (reason == 0 && fsync(fd) != 0) reason = errno;
-  close(fd);
-  return reason;
-}
-
-// The renames outlive a power cut only with their folder.
-void sync_folder_of(const std::string& path) {
-  const int fd = open(fs::path(path).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;
-  fsync(fd);
-  close(fd);
-}
-
-Result<void> rename_into_place(const std::string& serial, const std::string& path, const std::string& text,
-                               const std::string& keep_old_as) {
-  const std::string aside = path + ".part-" + std::to_string(getpid());
-  int reason = write_durably(aside, text);
-  // A second name for the old text: the file itself is never gone.
-  if (reason == 0 && !keep_old_as.empty() && link(path.c_str(), keep_old_as.c_str()) != 0) reason = errno;
-  if (reason == 0 && rename(aside.c_str(), path.c_str()) != 0) reason = errno;
-  if (reason == 0) {
-    sync_folder_of(path);
-    return {};
-  }
-  unlink(aside.c_str());
-  return failure(not_put(reason == ENOSPC || reason == EDQUOT ? ErrorCode::DiskFull : ErrorCode::InvalidInput, serial,
-                         path + ": " + std::strerror(reason), "a folder that the daemon may write to"));
 }
 
 }  // namespace
@@ -146,7 +91,11 @@ Result<std::string> ReferenceShelf::put(const std::string& serial, const std::st
                            "a new serial number, or --replace: scans keep the text they were accepted with"));
   }
   const std::string kept = is_there ? path + ".until-" + iso8601(now) : std::string();
-  GONIO_TRY(rename_into_place(serial, path, text, kept));
+  const Result<void> written = write_file(path, text, kept);
+  if (!written) {
+    return failure(not_put(written.error().code, serial, path + ": " + written.error().seen,
+                           "a folder that the daemon may write to"));
+  }
   return is_there ? "it replaces the text that is kept as " + kept : "written to " + path;
 }
 

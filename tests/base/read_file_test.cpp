@@ -2,18 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
+
+#include "tests/support/temporary_folder.h"
 
 namespace gonio {
 namespace {
 
 class ReadFile : public testing::Test {
  protected:
-  ReadFile() { std::filesystem::create_directory(folder_); }
-  ~ReadFile() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "gonio-read-file";
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ReadFile, GivesEveryByte) {
@@ -32,12 +30,12 @@ TEST_F(ReadFile, GivesNothingOfAnEmptyFile) {
 
 TEST_F(ReadFile, SaysWhyThereIsNoText) {
   const Result<std::string> missing = read_file(folder_ / "missing");
-  const Result<std::string> folder = read_file(folder_);
+  const Result<std::string> folder = read_file(folder_.path());
 
   ASSERT_FALSE(missing.has_value());
   EXPECT_EQ(missing.error().code, ErrorCode::FileUnreadable);
   EXPECT_EQ(missing.error().seen, "No such file or directory");
-  EXPECT_EQ(missing.error().where->file, (folder_ / "missing").string());
+  EXPECT_EQ(missing.error().where->file, folder_ / "missing");
   ASSERT_FALSE(folder.has_value());
   EXPECT_EQ(folder.error().code, ErrorCode::FileUnreadable);
   EXPECT_EQ(folder.error().seen, "Is a directory");

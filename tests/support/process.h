@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace gonio::test {
 
 /// A child program with its output in a file. The destructor kills it (SIGKILL) and reaps it.
@@ -48,20 +50,6 @@ struct Finished {
 /// be met.
 template <class Condition>
 bool eventually(Condition condition, std::chrono::milliseconds deadline);
-
-/// A new folder below the temporary folder, removed with all its content at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 [[nodiscard]] std::string text_of(const std::string& file);
 void write_text(const std::string& file, const std::string& text);

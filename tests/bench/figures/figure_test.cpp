@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/temporary_folder.h"
+
 namespace gonio::bench {
 namespace {
 
@@ -64,18 +66,16 @@ TEST(NotesFigures, ShowALambertianSurfaceAlikeInAllDirectionsAndItsIntensityAsAC
 }
 
 TEST(NotesFigures, AreWrittenWithADataFileForEachCurve) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "notes_figures";
-  std::filesystem::create_directories(folder);
+  const gonio::test::TemporaryFolder folder;
   const std::vector<Figure> all = notes_figures().value();
   for (const Figure& f : all) {
-    ASSERT_TRUE(write_figure(f, folder).has_value());
+    ASSERT_TRUE(write_figure(f, folder.path()).has_value());
     EXPECT_TRUE(std::filesystem::exists(folder / (f.name + ".gnuplot")));
     for (const Curve& curve : f.curves) {
       std::ifstream data(folder / (f.name + "-" + curve.file + "-cut.dat"));
       EXPECT_EQ(std::count(std::istreambuf_iterator<char>(data), {}, '\n'), std::lround(8.0 * f.most_theta_r_deg) + 1);
     }
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(NotesFigures, SayWhichFileCannotBeWritten) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,29 +8,17 @@
 #include "daemon/store/records.h"
 #include "daemon/store/store_writer.h"
 #include "tests/daemon/support/bench_instrument.h"
+#include "tests/support/temporary_folder.h"
 
 namespace gonio::daemon::test {
 
 /// A folder of its own, gone with the test.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    // In memory where there is such a folder: these tests kill programs, not the power.
-    const std::filesystem::path memory = "/dev/shm";
-    const auto parent = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
-    std::string pattern = (parent / "gonio-store-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_ / name; }
 
  private:
-  std::filesystem::path path_;
+  gonio::test::TemporaryFolder folder_{gonio::test::folder_in_memory()};
 };
 
 /// What a client submits for a plan on the bench instrument.

@@ -10,8 +10,8 @@
 #include "drivers/links/modbus_frames.h"
 #include "sim/wires/serial_pty.h"
 #include "tests/fuzz/promise.h"
-#include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/temporary_folder.h"
 
 namespace gonio::fuzz {
 namespace {
@@ -23,9 +23,9 @@ constexpr std::size_t kMostBytes = 300;  // more than a frame has
 class Line {
  public:
   Line()
-      : pty_(sim::SerialPty::open(folder_.path("tty")).value()),
+      : pty_(sim::SerialPty::open(folder_ / "tty").value()),
         context_(drivers::ModbusContext::rtu(
-            {.device = folder_.path("tty"), .parity = drivers::Parity::None, .stop_bits = 2}, kUnit)),
+            {.device = folder_ / "tty", .parity = drivers::Parity::None, .stop_bits = 2}, kUnit)),
         tty_(context_.open_line().value()) {}
 
   // Bytes pass through a queue of the kernel's: they are here when the near end counts all of them.
@@ -38,7 +38,7 @@ class Line {
   void flush() const { ::tcflush(tty_, TCIFLUSH); }
 
  private:
-  ScratchFolder folder_;
+  test::TemporaryFolder folder_;
   sim::SerialPty pty_;
   drivers::ModbusContext context_;
   int tty_;

@@ -5,16 +5,16 @@
 #include "sim/scene/read_scene.h"
 #include "sim/scene/truth.h"
 #include "tests/fuzz/promise.h"
-#include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/process.h"
 
 namespace gonio::fuzz {
 
 void scene_toml(Bytes input) {
-  static const ScratchFolder folder;
-  const std::string path = folder.path("scene.toml");
+  static const test::TemporaryFolder folder(test::folder_in_memory());
+  const std::string path = folder / "scene.toml";
   const std::string_view text = text_of(input);
-  folder.write("scene.toml", text);
+  test::write_text(path, std::string(text));
   const auto scene = sim::read_scene(path);
   if (!scene) {
     hold_error(scene.error());

@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <hdf5.h>
-#include <unistd.h>
 
-#include "reflectance/formats/write_aside.h"
+#include "base/write_file.h"
 #include "tests/reflectance/formats/sample_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace gonio::formats {
 namespace {
@@ -70,9 +69,9 @@ std::string attribute(hid_t file, const char* object, const char* name) {
 }
 
 TEST(NexusFile, HoldsABrightReadingWhereItWas) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("gonio-nexus-" + std::to_string(getpid()) + ".nxs")).string();
-  ASSERT_TRUE(write_aside(path, bytes_of(write_nexus(bright_retro()), ".nxs")));
+  const gonio::test::TemporaryFolder folder;
+  const std::string path = folder / "bright.nxs";
+  ASSERT_TRUE(write_file(path, bytes_of(write_nexus(bright_retro()), ".nxs")));
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   ASSERT_GE(file, 0);
 
@@ -92,7 +91,6 @@ TEST(NexusFile, HoldsABrightReadingWhereItWas) {
   EXPECT_EQ(attribute(file, "/entry/data/theta_r", "units"), "deg");
   EXPECT_EQ(attribute(file, "/entry/data/f", "units"), "1/sr");
   H5Fclose(file);
-  std::filesystem::remove(path);
 }
 
 TEST(NexusFile, SaysWhatABadOneLacks) {

@@ -1,4 +1,4 @@
-#include "reflectance/formats/write_aside.h"
+#include "base/write_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,10 +8,10 @@
 #include <cstring>
 #include <filesystem>
 
-namespace gonio::formats {
+namespace gonio {
 namespace {
 
-Error write_error(const std::string& path, int reason) {
+Error unwritten_file(const std::string& path, int reason) {
   return {.code = reason == ENOSPC || reason == EDQUOT ? ErrorCode::DiskFull : ErrorCode::InvalidInput,
           .tried = "write the file",
           .seen = std::strerror(reason),
@@ -19,7 +19,7 @@ Error write_error(const std::string& path, int reason) {
 }
 
 // 0, or errno.
-int write_durably(int fd, std::string_view bytes) {
+int write_all_durably(int fd, std::string_view bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t n = write(fd, bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
@@ -30,7 +30,7 @@ int write_durably(int fd, std::string_view bytes) {
 }
 
 // The rename itself outlives a power cut only with its folder. A file system that refuses leaves the file whole.
-void sync_folder(const std::string& path) {
+void sync_folder_of(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const int fd = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;
@@ -40,25 +40,22 @@ void sync_folder(const std::string& path) {
 
 }  // namespace
 
-Result<void> write_aside(const std::string& path, std::string_view bytes) {
+Result<void> write_file(const std::string& path, std::string_view bytes, const std::string& keep_old_as) {
   const std::string aside = path + ".part-" + std::to_string(getpid());
   constexpr mode_t kMode = 0644;
   const int fd = open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
-  if (fd < 0) return failure(write_error(path, errno));
-  int reason = write_durably(fd, bytes);
+  if (fd < 0) return failure(unwritten_file(path, errno));
+  int reason = write_all_durably(fd, bytes);
   if (close(fd) != 0 && reason == 0) reason = errno;
+  // A second name for the old text: the file itself is never gone.
+  if (reason == 0 && !keep_old_as.empty() && link(path.c_str(), keep_old_as.c_str()) != 0) reason = errno;
   if (reason == 0 && rename(aside.c_str(), path.c_str()) != 0) reason = errno;
   if (reason == 0) {
-    sync_folder(path);
+    sync_folder_of(path);
     return {};
   }
   unlink(aside.c_str());
-  return failure(write_error(path, reason));
+  return failure(unwritten_file(path, reason));
 }
 
-Result<void> write_export(const std::string& stem, const Export& written) {
-  for (const OutputFile& file : written.files) GONIO_TRY(write_aside(stem + file.suffix, file.bytes));
-  return {};
-}
-
-}  // namespace gonio::formats
+}  // namespace gonio
