@@ -17,7 +17,7 @@
 #include "daemon/analysis/scan_data.h"
 #include "daemon/analysis/stored_scan.h"
 #include "daemon/analysis/trace.h"
-#include "daemon/app/calibration_desk.h"
+#include "daemon/results/calibration_desk.h"
 #include "reflectance/formats/scan_of_file.h"
 
 namespace gonio::analysis {

@@ -8,8 +8,8 @@
 #include "calibration/calibrated_scan.h"
 #include "daemon/analysis/html.h"
 #include "daemon/analysis/report.h"
-#include "daemon/app/calibration_desk.h"
-#include "daemon/app/results.h"
+#include "daemon/results/calibration_desk.h"
+#include "daemon/results/results.h"
 
 namespace gonio::analysis {
 namespace {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "calibration/calibrated_scan.h"
-#include "daemon/app/calibration_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/results/calibration_desk.h"
 
 namespace gonio::analysis {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/app/calibration_desk.h"
+#include "daemon/results/calibration_desk.h"
 
 namespace gonio::analysis {
 namespace {

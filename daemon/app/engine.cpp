@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include "daemon/app/calibration_desk.h"
-#include "daemon/app/event_sentence.h"
-#include "daemon/app/job_desk.h"
 #include "daemon/app/log.h"
+#include "daemon/desks/event_sentence.h"
+#include "daemon/results/calibration_desk.h"
+#include "daemon/results/job_desk.h"
 #include "daemon/tape/tape_input.h"
 
 namespace gonio::daemon {

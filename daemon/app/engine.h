@@ -12,7 +12,6 @@
 #include "daemon/app/latest.h"
 #include "daemon/app/pending_replies.h"
 #include "daemon/app/sequencer_desk.h"
-#include "daemon/app/version_desk.h"
 #include "daemon/config/instrument.h"
 #include "daemon/engine/actor_thread.h"
 #include "daemon/engine/detector_actor.h"
@@ -22,6 +21,7 @@
 #include "daemon/engine/stage_actor.h"
 #include "daemon/engine/turns.h"
 #include "daemon/http/worker.h"
+#include "daemon/results/version_desk.h"
 #include "daemon/store/store_actor.h"
 
 namespace gonio::daemon {

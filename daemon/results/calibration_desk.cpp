@@ -1,4 +1,4 @@
-#include "daemon/app/calibration_desk.h"
+#include "daemon/results/calibration_desk.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "daemon/app/completion_desk.h"
+#include "daemon/desks/completion_desk.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
-#include "daemon/app/reference_shelf.h"
+#include "daemon/desks/reference_shelf.h"
 #include "protocol/api/reports.h"
 #include "protocol/api/requests.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/app/job_desk.h"
+#include "daemon/results/job_desk.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include "calibration/jobs/arm_zeros.h"
 #include "calibration/jobs/control_chart.h"
 #include "calibration/jobs/linearity_ladder.h"
-#include "daemon/app/calibration_desk.h"
-#include "daemon/app/version_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/results/calibration_desk.h"
+#include "daemon/results/version_desk.h"
 #include "daemon/store/version_list.h"
 #include "protocol/api/plan.h"
 

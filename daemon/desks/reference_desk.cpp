@@ -1,4 +1,4 @@
-#include "daemon/app/reference_desk.h"
+#include "daemon/desks/reference_desk.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "daemon/app/mode_outlook.h"
+#include "daemon/desks/mode_outlook.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/app/plan_desk.h"
+#include "daemon/desks/plan_desk.h"
 
 #include "daemon/planner/anchor.h"
 #include "daemon/planner/planner.h"

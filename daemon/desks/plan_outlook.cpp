@@ -1,4 +1,4 @@
-#include "daemon/app/plan_outlook.h"
+#include "daemon/desks/plan_outlook.h"
 
 #include <algorithm>
 #include <cmath>

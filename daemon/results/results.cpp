@@ -1,4 +1,4 @@
-#include "daemon/app/results.h"
+#include "daemon/results/results.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 
 #include "calibration/calibrated_scan.h"
 #include "calibration/point_flags.h"
-#include "daemon/app/calibration_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/results/calibration_desk.h"
 #include "daemon/store/policy_names.h"
 #include "daemon/store/version_list.h"
 

@@ -4,8 +4,8 @@
 
 #include "base/clock.h"
 #include "base/result.h"
-#include "daemon/app/reference_shelf.h"
 #include "daemon/config/instrument.h"
+#include "daemon/desks/reference_shelf.h"
 #include "daemon/store/records.h"
 #include "daemon/store/store_reader.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/app/scan_review.h"
+#include "daemon/desks/scan_review.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include "calibration/calibrate.h"
 #include "calibration/checks/check_scan.h"
 #include "calibration/point_flags.h"
-#include "daemon/app/version_desk.h"
 #include "daemon/config/instrument.h"
+#include "daemon/results/version_desk.h"
 
 namespace gonio::daemon {
 namespace {

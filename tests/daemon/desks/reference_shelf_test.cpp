@@ -1,4 +1,4 @@
-#include "daemon/app/reference_shelf.h"
+#include "daemon/desks/reference_shelf.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "daemon/app/version_desk.h"
+#include "daemon/results/version_desk.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/app/scan_reports.h"
+#include "daemon/desks/scan_reports.h"
 
 #include <algorithm>
 

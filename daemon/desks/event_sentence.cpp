@@ -1,4 +1,4 @@
-#include "daemon/app/event_sentence.h"
+#include "daemon/desks/event_sentence.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
-#include "daemon/app/results.h"
+#include "daemon/results/results.h"
 
 #include <gtest/gtest.h>
 
 #include "calibration/calibrated_scan.h"
-#include "daemon/app/calibration_desk.h"
+#include "daemon/results/calibration_desk.h"
 
 namespace gonio::daemon {
 namespace {

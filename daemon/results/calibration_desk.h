@@ -2,7 +2,7 @@
 
 #include "base/result.h"
 #include "calibration/calibrated_scan.h"
-#include "daemon/app/version_desk.h"
+#include "daemon/results/version_desk.h"
 #include "daemon/store/records.h"
 #include "daemon/store/store_reader.h"
 

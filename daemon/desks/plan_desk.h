@@ -4,8 +4,8 @@
 
 #include "base/clock.h"
 #include "base/result.h"
-#include "daemon/app/reference_shelf.h"
 #include "daemon/config/instrument.h"
+#include "daemon/desks/reference_shelf.h"
 #include "daemon/planner/planned_scan.h"
 #include "protocol/api/plan.h"
 #include "protocol/api/requests.h"

@@ -1,11 +1,11 @@
-#include "daemon/app/completion_desk.h"
+#include "daemon/desks/completion_desk.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "daemon/app/plan_desk.h"
+#include "daemon/desks/plan_desk.h"
 #include "daemon/planner/anchor.h"
 #include "daemon/planner/planner.h"
 #include "daemon/sequencer/scan_machine.h"

@@ -1,4 +1,4 @@
-#include "daemon/app/instrument_report.h"
+#include "daemon/desks/instrument_report.h"
 
 #include <fmt/format.h>
 

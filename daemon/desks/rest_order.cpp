@@ -1,4 +1,4 @@
-#include "daemon/app/rest_order.h"
+#include "daemon/desks/rest_order.h"
 
 #include <limits>
 #include <utility>

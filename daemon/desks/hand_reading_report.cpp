@@ -1,4 +1,4 @@
-#include "daemon/app/hand_reading_report.h"
+#include "daemon/desks/hand_reading_report.h"
 
 #include <fmt/format.h>
 
