@@ -24,3 +24,8 @@ gonio_may_link(gonio_sim gonio_protocol_stage gonio_protocol_usbtmc gonio_reflec
 gonio_may_link(gonio_sim_usb gonio_sim)
 gonio_may_link(gonio_cli gonio_protocol_api gonio_base)
 gonio_may_link(gonioctl gonio_cli)
+# What answers, but starts no thread: never gonio_daemon, gonio_daemon_engine, gonio_daemon_http.
+gonio_may_link(gonio_daemon_results gonio_base gonio_protocol_api gonio_calibration gonio_daemon_config
+  gonio_daemon_store)
+gonio_may_link(gonio_daemon_desks gonio_base gonio_protocol_api gonio_calibration gonio_drivers gonio_daemon_config
+  gonio_daemon_planner gonio_daemon_store gonio_daemon_sequencer gonio_daemon_results)
