@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +17,7 @@
 
 #include "bench/instant/instant_stage.h"
 #include "daemon/app/engine.h"
+#include "daemon/app/log.h"
 #include "drivers/links/tcp_modbus_link.h"
 #include "drivers/modbus_stage/modbus_halt_line.h"
 #include "drivers/modbus_stage/modbus_stage.h"
@@ -141,22 +143,25 @@ void clean(const std::string& store) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  daemon::start_log("warning");
   const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
   const long points = argc > 2 ? std::atol(argv[2]) : 5000;
   const std::string store = (folder / "bench_instant.sqlite").string();
-  double best = 0.0;
+  std::vector<double> rates;
   for (int round = 0; round < 3; ++round) {
     clean(store);
     const double syncs = syncs_a_second((folder / "bench_instant.sync").string());
     const double rate = engine_rate(store, points);
-    best = std::max(best, rate);
+    rates.push_back(rate);
     std::printf("%7.0f items/s, each a move, an exposure and a durable commit; the disk alone: %7.0f synced pages/s\n",
                 rate, syncs);
     std::fflush(stdout);
   }
   clean(store);
-  std::printf("limit %.0f   %s\n", kLimit, best >= kLimit ? "held" : "NOT HELD");
-  return best >= kLimit ? 0 : 1;
+  std::ranges::sort(rates);
+  const bool held = rates[rates.size() / 2] >= kLimit;
+  std::printf("median %.0f, limit %.0f   %s\n", rates[rates.size() / 2], kLimit, held ? "held" : "NOT HELD");
+  return held ? 0 : 1;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());
   return 1;
