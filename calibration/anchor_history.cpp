@@ -50,7 +50,8 @@ void add_change(AnchorReading& found, const DriftLevel& at) {
        .u = u,
        .unit = "1",
        .per_sd = -u / at.level,
-       .degrees_of_freedom = at.is_between() ? at.wander_dof : std::numeric_limits<double>::infinity()});
+       .degrees_of_freedom = at.is_between() ? at.wander_dof : std::numeric_limits<double>::infinity(),
+       .is_pattern_known = false});
 }
 
 AnchorReading reading_like(const ReferenceVisit& visit, double level) {

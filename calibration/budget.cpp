@@ -136,6 +136,7 @@ Budget make_budget_in_place(std::span<const Component> components, std::vector<B
   budget.k = coverage_factor(budget.degrees_of_freedom);
   const double rest = random2 + shared2 - rectangle;
   if (rectangle > 0.25 * rest) {
+    budget.method = BudgetMethod::FormulaWithRectangle;
     budget.k *= coverage_factor_with_rectangle(std::sqrt(rectangle / std::max(rest, 1e-12 * rectangle))) / 2.0;
   }
   budget.expanded = budget.k * budget.u;

@@ -17,8 +17,9 @@ enum class ComponentKind : std::uint8_t { Random, Shared };
 /// What is known of how an error is distributed. Rectangular: a stated bound, u = half width / sqrt(3).
 enum class Distribution : std::uint8_t { Normal, Rectangular };
 
-/// How a budget was made.
-enum class BudgetMethod : std::uint8_t { Formula, MonteCarlo };
+/// How a budget was made. FormulaWithRectangle: one rectangular component is so large that k is not Student's
+/// (coverage_interval.h).
+enum class BudgetMethod : std::uint8_t { Formula, FormulaWithRectangle, MonteCarlo };
 
 /// One source of uncertainty of a scan.
 struct Component {
@@ -31,6 +32,9 @@ struct Component {
   /// What the error belongs to: components of two scans with the same name and owner are one error. Empty: this scan
   /// alone has it.
   std::string owner;
+  /// Of a shared component: true where one error acts on all points with the signs of their terms, so that it cancels
+  /// between them; false where the terms are sizes alone and nobody knows the error's course over the points.
+  bool is_pattern_known = true;
 };
 
 /// What one standard deviation of a component does to a value. Absolute, in sr^-1, for the value may be 0 or negative.

@@ -119,7 +119,7 @@ void add_cone_terms(const ConeCorrection& c, const InstrumentModel& instrument, 
   terms.shared({ComponentSource::ConeSize, 1}, in_degrees(cones.detector_half.u), "deg", c.per_detector_u,
                [] { return "half angle of the detector's cone"; }, {.owner = owner});
   terms.shared({ComponentSource::ConeCurvature}, 1.0, "of what the points do not resolve", c.u_unresolved,
-               [] { return "cones through unresolved curvature"; });
+               [] { return "cones through unresolved curvature"; }, {.is_pattern_known = false});
   if (c.u_noise > 0.0) {
     terms.random(ComponentSource::ConeNoise, "noise of the cones' correction", 0.0, "sr^-1", c.u_noise);
   }

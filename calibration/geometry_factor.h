@@ -22,6 +22,7 @@ struct RelativeTerm {
   std::string owner;                                                    ///< as Component::owner
   double per_sd = 0.0;                                                  ///< d ln f_s, signed
   double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of u
+  bool is_pattern_known = true;                                         ///< as Component::is_pattern_known
 };
 
 /// Whose the instrument's errors are: Component::owner.

@@ -61,7 +61,7 @@ class DriftTerms {
     terms_.shared({Source::Drift, before, after}, std::max(at.change, at.wander), "1",
                   p_.value / at.level * (at.is_between() ? bridge : onward),
                   [&] { return fmt::format("drift between visits {} and {}", before, after); },
-                  {.degrees_of_freedom = at.wander_dof});
+                  {.degrees_of_freedom = at.wander_dof, .is_pattern_known = false});
   }
 
   const PairedPoint& p_;
@@ -120,16 +120,19 @@ class DarkTerms {
     const std::int64_t after = id_of(share.level.after);
     if (const auto& power = detector_.power) {
       const double u = power->u_zero * static_cast<double>(share.rung.range_pw) * 1e-12;
-      terms_.shared({Source::DarkDrift, before, after, share.rung.range_pw}, u, "W", per_dn * u, [&] {
-        return fmt::format("zero {} to {} in the range of {}", before, after, range_text(share.rung.range_pw));
-      });
+      terms_.shared({Source::DarkDrift, before, after, share.rung.range_pw}, u, "W", per_dn * u,
+                    [&] {
+                      return fmt::format("zero {} to {} in the range of {}", before, after,
+                                         range_text(share.rung.range_pw));
+                    },
+                    {.is_pattern_known = false});
       divide(relative * u, u);
       return;
     }
     const double drift = detector_.u_dark_drift_dn_per_s;
     const double exposure_s = static_cast<double>(share.rung.exposure_us) * 1e-6;
     terms_.shared({Source::DarkDrift, before, after}, drift, "DN/s", per_dn * drift * exposure_s,
-                  [&] { return fmt::format("dark drift {} to {}", before, after); });
+                  [&] { return fmt::format("dark drift {} to {}", before, after); }, {.is_pattern_known = false});
     divide(relative * drift * exposure_s, drift);
   }
 

@@ -204,7 +204,8 @@ void add_mounting_terms(const PairedPoint& point, const DirectionSlopes& slopes,
                    [&] { return fmt::format("{} of the {}", error.name, target); }, {.owner = owner});
       if (effect.unresolved > 0.0) {
         terms.shared({ComponentSource::UnresolvedMounting, number}, error.u, error.unit, effect.unresolved,
-                     [&] { return fmt::format("{} of the {} through unresolved slopes", error.name, target); });
+                     [&] { return fmt::format("{} of the {} through unresolved slopes", error.name, target); },
+                     {.is_pattern_known = false});
       }
     }
   };

@@ -142,16 +142,18 @@ class PointTerms {
     terms_.shared(
         {ComponentSource::ShapeIntegral}, standard_.u_integral(), "1", f * standard_.u_integral(),
         [] { return "shape integral"; }, traits);
-    terms_.shared(
-        {ComponentSource::ShapeInterpolation}, 1.0, "of what curvature suggests",
-        f * standard_.u_interpolation(g, wavelength) / p_.standard.shape,
-        [] { return "shape between the nodes of its table"; }, traits);
+    terms_.shared({ComponentSource::ShapeInterpolation}, 1.0, "of what curvature suggests",
+                  f * standard_.u_interpolation(g, wavelength) / p_.standard.shape,
+                  [] { return "shape between the nodes of its table"; },
+                  {.owner = rules_.standard_owner_, .is_pattern_known = false});
   }
 
   void add_geometry() {
     for (const RelativeTerm& term : p_.terms) {
       terms_.shared(term.key, term.u, term.unit, p_.value * term.per_sd, [&] { return term.name; },
-                    {.degrees_of_freedom = term.degrees_of_freedom, .owner = term.owner});
+                    {.degrees_of_freedom = term.degrees_of_freedom,
+                     .owner = term.owner,
+                     .is_pattern_known = term.is_pattern_known});
     }
   }
 
@@ -177,7 +179,8 @@ class PointTerms {
           {ComponentSource::Zero, axis}, u_deg, "deg", per_sd, [&] { return fmt::format("zero {}", kAxisNames[a]); },
           traits);
       terms_.shared({ComponentSource::UnresolvedSlope, axis}, u_deg, "deg", slopes_.unresolved[a] * u,
-                    [&] { return fmt::format("zero {} through unresolved slopes", kAxisNames[a]); });
+                    [&] { return fmt::format("zero {} through unresolved slopes", kAxisNames[a]); },
+                    {.is_pattern_known = false});
     }
   }
 
@@ -218,7 +221,7 @@ class PointTerms {
     const LampModel& lamp = instrument_.lamp;
     if (p_.mode == ReferenceMode::Absolute) {  // the direct beam was read at another time
       terms_.shared({ComponentSource::Lamp, -1}, lamp.u_after_monitor, "1", p_.value * lamp.u_after_monitor,
-                    [] { return "lamp after the monitor, since the direct beam"; });
+                    [] { return "lamp after the monitor, since the direct beam"; }, {.is_pattern_known = false});
       return;
     }
     const double apart = in_seconds(p_.reference.at - p_.sample.at) / lamp.correlation_s;
@@ -226,9 +229,12 @@ class PointTerms {
         0.5 * (in_seconds(p_.reference.at.time_since_epoch()) + in_seconds(p_.sample.at.time_since_epoch()));
     const auto interval = static_cast<std::int64_t>(std::floor(middle / lamp.correlation_s));
     const double u = lamp.u_after_monitor * std::sqrt(-std::expm1(-0.5 * apart * apart));
-    terms_.shared({ComponentSource::Lamp, interval}, lamp.u_after_monitor, "1", p_.value * u, [&] {
-      return fmt::format("lamp after the monitor, {:.0f} s", static_cast<double>(interval) * lamp.correlation_s);
-    });
+    terms_.shared({ComponentSource::Lamp, interval}, lamp.u_after_monitor, "1", p_.value * u,
+                  [&] {
+                    return fmt::format("lamp after the monitor, {:.0f} s",
+                                       static_cast<double>(interval) * lamp.correlation_s);
+                  },
+                  {.is_pattern_known = false});
   }
 
   // df/db of the stated share b: what both readings have of it, by their brightness; of the light that the targets

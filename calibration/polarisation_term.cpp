@@ -30,7 +30,8 @@ void add_polarisation_terms(const PairedPoint& point, const InstrumentModel& ins
   const std::string owner = instrument.version.empty() ? "" : "instrument " + instrument.version;
   const auto add = [&](std::int64_t part, double u, double per_sd, std::string_view what, std::string_view of) {
     terms.shared({ComponentSource::Polarisation, part}, u, "of its diattenuation", per_sd * u,
-                 [&] { return fmt::format("polarisation of {}, by the {}", what, of); }, {.owner = owner});
+                 [&] { return fmt::format("polarisation of {}, by the {}", what, of); },
+                 {.owner = owner, .is_pattern_known = false});
   };
   const double f = point.value;
   add(0, model.u_sample, f * sign * source * facets, "the sample", "source");

@@ -15,7 +15,8 @@ namespace gonio::calibration {
 struct ComponentTraits {
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
   Distribution distribution = Distribution::Normal;
-  std::string_view owner;  ///< Component::owner
+  std::string_view owner;        ///< Component::owner
+  bool is_pattern_known = true;  ///< Component::is_pattern_known
 };
 
 /// The terms of one point on their way to a budget; used again for the next one. Threads: one each.
@@ -72,8 +73,14 @@ class TermList {
   std::uint32_t index_of(const ComponentTable::Key& key, double u, std::string_view unit, const Name& name,
                          const ComponentTraits& traits) {
     return table_.index(key, [&] {
-      return Component{std::string(name()), ComponentKind::Shared,    u, std::string(unit), traits.degrees_of_freedom,
-                       traits.distribution, std::string(traits.owner)};
+      return Component{.name = std::string(name()),
+                       .kind = ComponentKind::Shared,
+                       .u = u,
+                       .unit = std::string(unit),
+                       .degrees_of_freedom = traits.degrees_of_freedom,
+                       .distribution = traits.distribution,
+                       .owner = std::string(traits.owner),
+                       .is_pattern_known = traits.is_pattern_known};
     });
   }
 

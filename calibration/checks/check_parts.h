@@ -30,8 +30,6 @@ void judge_by_worst(ScanCheck& check, std::size_t n);
 /// uncertainty is not positive.
 [[nodiscard]] std::optional<reflectance::SymmetryPoint> symmetry_point(const CalibratedPoint& point,
                                                                        std::span<const Component> components);
-/// Whether a component's effect on two points has the sign of one common error.
-[[nodiscard]] bool has_common_sign(const Component& component);
 
 /// chi-square of groups into `check`; its p value with the worst of `n` deviations. A refusal becomes its finding.
 void judge_groups(ScanCheck& check, std::span<const std::vector<reflectance::GroupMember>> groups, std::size_t n);

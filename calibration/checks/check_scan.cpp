@@ -11,18 +11,12 @@
 namespace gonio::calibration {
 namespace {
 
-// Errors whose effect on each point is stored with its sign; whatever is not among them adds as squares.
-constexpr std::array<std::string_view, 11> kSignedComponents{
-    "certificate",     "shape mode",        "shape integral",   "zero ",
-    "exposure offset", "linearity",         "dark visit",       "dark drift",
-    "reference visit", "reference reading", "gain of the range"};
-
 // Of each size without a sign its square joins what is random.
 double unsigned_variance(const CalibratedPoint& point, std::span<const Component> components) {
   double variance = 0.0;
   for (const BudgetTerm& term : point.budget.shared) {
     const Component& component = components[term.component];
-    if (has_common_sign(component)) continue;
+    if (component.is_pattern_known) continue;
     variance += widened(component.degrees_of_freedom) * term.per_sd.si() * term.per_sd.si();
   }
   return variance;
@@ -81,12 +75,6 @@ void judge(ScanCheck& check, std::size_t n) {
   check.verdict = check.p_value < kFalseAlarm ? CheckVerdict::Failed : CheckVerdict::Passed;
 }
 
-bool has_common_sign(const Component& component) {
-  if (component.name.find("unresolved") != std::string::npos) return false;
-  return std::ranges::any_of(kSignedComponents,
-                             [&](std::string_view name) { return component.name.starts_with(name); });
-}
-
 std::optional<reflectance::SymmetryPoint> symmetry_point(const CalibratedPoint& point,
                                                          std::span<const Component> components) {
   const double variance = random_variance(point, components) + unsigned_variance(point, components);
@@ -95,7 +83,7 @@ std::optional<reflectance::SymmetryPoint> symmetry_point(const CalibratedPoint& 
       .geometry = point.geometry, .value = point.value, .u_random = per_steradian(std::sqrt(variance)), .shared = {}};
   for (const BudgetTerm& term : point.budget.shared) {
     const Component& component = components[term.component];
-    if (!has_common_sign(component)) continue;
+    if (!component.is_pattern_known) continue;
     out.shared.push_back({term.component, std::sqrt(widened(component.degrees_of_freedom)) * term.per_sd});
   }
   return out;

@@ -30,14 +30,6 @@ MeasuredPoint data_point(const daemon::BrdfRow& row) {
   return point;
 }
 
-// What bounds an error whose course over the points nobody knows.
-bool has_known_pattern(const std::string& component) {
-  for (const char* word : {"unresolved", "lamp after", "drift"}) {
-    if (component.find(word) != std::string::npos) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 Result<MeasuredScan> scan_data(const StoredScan& scan, const formats::MeasuredBrdf& brdf, std::size_t channel) {
@@ -53,9 +45,10 @@ Result<MeasuredScan> scan_data(const StoredScan& scan, const formats::MeasuredBr
                     .components = {},
                     .points = {}};
   for (const std::string& name : scan.brdf.component_names) {
-    data.components.push_back({.name = name.substr(0, name.find(" [")),
-                               .source = source_of(name, scan),
-                               .is_pattern_known = has_known_pattern(name)});
+    data.components.push_back({.name = name.substr(0, name.find(" [")), .source = source_of(name, scan)});
+  }
+  for (const std::uint32_t place : scan.brdf.sizes_only) {
+    if (place < data.components.size()) data.components[place].is_pattern_known = false;
   }
   // `brdf` was made of these rows, in their order.
   for (std::size_t n = 0; n < scan.brdf.rows.size(); ++n) {

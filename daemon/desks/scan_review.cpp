@@ -127,9 +127,15 @@ api::BudgetTermReport term_report(const calibration::BudgetTerm& term, const cal
 }
 
 std::string method_words(const calibration::Budget& budget) {
-  return budget.method == calibration::BudgetMethod::MonteCarlo
-             ? "Monte Carlo (JCGM 101:2008); the shares are those of the linear terms"
-             : "law of propagation (JCGM 100:2008, eq 13), k by Welch-Satterthwaite (eq G.2b) for 95.45 %";
+  switch (budget.method) {
+    case calibration::BudgetMethod::MonteCarlo:
+      return "Monte Carlo (JCGM 101:2008); the shares are those of the linear terms";
+    case calibration::BudgetMethod::FormulaWithRectangle:
+      return "law of propagation (JCGM 100:2008, eq 13), k of a normal and a rectangular error for 95.45 %";
+    case calibration::BudgetMethod::Formula:
+      break;
+  }
+  return "law of propagation (JCGM 100:2008, eq 13), k by Welch-Satterthwaite (eq G.2b) for 95.45 %";
 }
 
 api::PointBudgetReport budget_report(const CalibratedScan& scan, const CalibratedPoint& point) {

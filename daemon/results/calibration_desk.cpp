@@ -1,5 +1,6 @@
 #include "daemon/results/calibration_desk.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -24,6 +25,11 @@ BrdfRow row_of(const calibration::CalibratedPoint& point) {
   for (const calibration::BudgetTerm& term : point.budget.shared) {
     row.sensitivities_per_sr.push_back(static_cast<double>(term.component));
     row.sensitivities_per_sr.push_back(in_per_steradian(term.per_sd));
+  }
+  if (point.budget.method != calibration::BudgetMethod::Formula) {
+    row.interval = {.u_per_sr = in_per_steradian(point.budget.u),
+                    .below_per_sr = in_per_steradian(point.budget.below),
+                    .above_per_sr = in_per_steradian(point.budget.above)};
   }
   return row;
 }
@@ -64,6 +70,7 @@ Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan, const AskedVersio
                .inputs_json = inputs_json(*texts, calibration::describe_inputs(chosen->model, *standard))};
   brdf.versions = chosen->versions;
   for (const calibration::Component& component : calibrated->components) {
+    if (!component.is_pattern_known) brdf.sizes_only.push_back(static_cast<std::uint32_t>(brdf.component_names.size()));
     brdf.component_names.push_back(component_text(component));
   }
   for (const calibration::CalibratedPoint& point : calibrated->points) brdf.rows.push_back(row_of(point));
@@ -80,7 +87,8 @@ Result<BrdfInfo> brdf_of(StoreReader& reader, ScanId scan) {
                   .inputs_json = std::move(computed->inputs_json),
                   .component_names = std::move(computed->component_names),
                   .rows = std::move(computed->rows),
-                  .versions = std::move(computed->versions)};
+                  .versions = std::move(computed->versions),
+                  .sizes_only = std::move(computed->sizes_only)};
 }
 
 bool is_drawn_anew(std::string_view component) {
@@ -99,6 +107,13 @@ StoredBudget budget_of(const BrdfRow& row) {
   budget.k = calibration::coverage_factor(row.effective_dof > 0.0 ? row.effective_dof
                                                                   : std::numeric_limits<double>::infinity());
   budget.expanded_per_sr = budget.k * budget.u_per_sr;
+  budget.below_per_sr = budget.above_per_sr = budget.expanded_per_sr;
+  if (!row.interval) return budget;
+  budget.u_per_sr = row.interval->u_per_sr;
+  budget.below_per_sr = row.interval->below_per_sr;
+  budget.above_per_sr = row.interval->above_per_sr;
+  budget.expanded_per_sr = std::max(budget.below_per_sr, budget.above_per_sr);
+  if (budget.u_per_sr > 0.0) budget.k = budget.expanded_per_sr / budget.u_per_sr;
   return budget;
 }
 

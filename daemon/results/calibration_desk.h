@@ -24,6 +24,8 @@ struct StoredBudget {
   double u_per_sr = 0.0;
   double k = 2.0;
   double expanded_per_sr = 0.0;
+  double below_per_sr = 0.0;  ///< the 95.45 % interval is [value - below, value + above]; U is the larger
+  double above_per_sr = 0.0;
 };
 [[nodiscard]] StoredBudget budget_of(const BrdfRow& row);
 

@@ -63,6 +63,8 @@ api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row, const std::
   report.u_per_sr = budget.u_per_sr;
   report.k = budget.k;
   report.expanded_u_per_sr = budget.expanded_per_sr;
+  report.below_per_sr = budget.below_per_sr;
+  report.above_per_sr = budget.above_per_sr;
   report.status = "accepted";
   report.flags = calibration::flag_words(row->flags);
   return report;
@@ -95,10 +97,10 @@ std::string cell(const std::optional<double>& value) {
 }
 
 std::string csv_row(const api::BrdfReport& r) {
-  return fmt::format("{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6g},{},{},{},{},{},{},{},{}\n", r.point, r.theta_i_deg,
+  return fmt::format("{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6g},{},{},{},{},{},{},{},{},{},{}\n", r.point, r.theta_i_deg,
                      r.phi_i_deg, r.theta_r_deg, r.phi_r_deg, r.wavelength_nm, cell(r.brdf_per_sr),
                      cell(r.u_random_per_sr), cell(r.u_shared_per_sr), cell(r.u_per_sr), cell(r.k),
-                     cell(r.expanded_u_per_sr), r.status, r.flags);
+                     cell(r.expanded_u_per_sr), cell(r.below_per_sr), cell(r.above_per_sr), r.status, r.flags);
 }
 
 // Names may hold anything: a line of metadata is one line.
@@ -164,7 +166,7 @@ Result<std::string> export_csv(StoreReader& reader, ScanId scan, const std::stri
   std::string text = metadata(*info, *texts, *brdf, software);
   text +=
       "point,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,wavelength_nm,brdf_per_sr,u_random_per_sr,u_shared_per_sr,"
-      "u_per_sr,k,expanded_u_per_sr,status,flags\n";
+      "u_per_sr,k,expanded_u_per_sr,below_per_sr,above_per_sr,status,flags\n";
   for (const api::BrdfReport& report : join(*points, *brdf, info->policy.reference_mode)) text += csv_row(report);
   return text;
 }

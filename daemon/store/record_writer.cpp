@@ -306,14 +306,15 @@ void RecordWriter::write_power(std::int64_t reading, const char* role, const Pow
 void RecordWriter::operator()(const NewBrdf& brdf) {
   database_
       .statement(
-          "INSERT INTO calibration(scan_id, code_version, inputs_json, component_names_json, utc_ns, versions) "
-          "VALUES (?,?,?,?,?,?)")
+          "INSERT INTO calibration(scan_id, code_version, inputs_json, component_names_json, utc_ns, versions, "
+          "sizes_only_json) VALUES (?,?,?,?,?,?,?)")
       .bind(brdf.scan)
       .bind(brdf.code_version)
       .bind(brdf.inputs_json)
       .bind(nlohmann::json(brdf.component_names).dump())
       .bind(time_.utc_ns)
       .bind(version_list_text(brdf.versions))
+      .bind(nlohmann::json(brdf.sizes_only).dump())
       .run();
   const std::int64_t calibration = database_.last_id();
   Statement& insert = database_.statement("INSERT INTO brdf VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
@@ -323,6 +324,12 @@ void RecordWriter::operator()(const NewBrdf& brdf) {
     insert.bind(in_degrees(row.reported.theta_i)).bind(in_degrees(row.reported.phi_i));
     insert.bind(in_degrees(row.reported.theta_r)).bind(in_degrees(row.reported.phi_r));
     insert.bind_blob(row.sensitivities_per_sr).run();
+  }
+  Statement& insert_interval = database_.statement("INSERT INTO brdf_interval VALUES (?,?,?,?,?)");
+  for (const BrdfRow& row : brdf.rows) {
+    if (!row.interval) continue;
+    insert_interval.bind(calibration).bind(row.point).bind(row.interval->u_per_sr);
+    insert_interval.bind(row.interval->below_per_sr).bind(row.interval->above_per_sr).run();
   }
 }
 

@@ -235,6 +235,14 @@ struct NewVisit {
   std::vector<ItemKey> reopened;
 };
 
+/// A 95.45 % interval that does not follow from a row's terms and degrees of freedom: by Monte Carlo, or with a
+/// dominant rectangular error. In sr^-1.
+struct StoredInterval {
+  double u_per_sr = 0.0;      ///< combined standard uncertainty
+  double below_per_sr = 0.0;  ///< the interval is [value - below, value + above]
+  double above_per_sr = 0.0;
+  friend bool operator==(const StoredInterval&, const StoredInterval&) = default;
+};
 /// One BRDF value as stored. Values in sr^-1.
 struct BrdfRow {
   std::int32_t point = 0;
@@ -246,6 +254,7 @@ struct BrdfRow {
   /// The shared terms that are not zero, as pairs (component's place in `component_names`, c_k u_k in sr^-1),
   /// flattened: a long scan has hundreds of components (each dark visit is one) and a point few of them.
   std::vector<double> sensitivities_per_sr;
+  std::optional<StoredInterval> interval{};  ///< none: +- k u of the terms above
 };
 /// The BRDF of a scan by one calibration. A scan has as many as it was computed; the newest counts.
 struct NewBrdf {
@@ -255,6 +264,7 @@ struct NewBrdf {
   std::vector<std::string> component_names;  ///< of `sensitivities_per_sr`
   std::vector<BrdfRow> rows;
   std::vector<CalibrationVersion> versions{};  ///< that it was computed with, ascending; empty: instrument.toml alone
+  std::vector<std::uint32_t> sizes_only{};     ///< places of components whose terms have no known sign, ascending
 };
 /// What a calibration job has found: it becomes a version, and counts for nothing before it is used.
 struct NewFoundCalibration {

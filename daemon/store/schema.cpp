@@ -421,9 +421,26 @@ ALTER TABLE scan ADD COLUMN anchor_theta_r_deg REAL NOT NULL DEFAULT 45.0;
 ALTER TABLE scan ADD COLUMN anchor_phi_r_deg REAL NOT NULL DEFAULT 0.0;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2,  kVersion3, kVersion4,
-                                                              kVersion5, kVersion6,  kVersion7, kVersion8,
-                                                              kVersion9, kVersion10, kVersion11};
+// Version 12: components whose terms are sizes without a known sign (until then told by their names), and the intervals
+// of values whose k is not that of their degrees of freedom.
+constexpr const char* kVersion12 = R"sql(
+ALTER TABLE calibration ADD COLUMN sizes_only_json TEXT NOT NULL DEFAULT '[]';
+UPDATE calibration SET sizes_only_json = (SELECT json_group_array(key) FROM json_each(component_names_json) WHERE
+  value LIKE '%unresolved%' OR value LIKE '%lamp after%' OR value LIKE '%drift%');
+CREATE TABLE brdf_interval(
+  calibration_id INTEGER NOT NULL REFERENCES calibration,
+  point_index INTEGER NOT NULL,
+  u_per_sr REAL NOT NULL,
+  below_per_sr REAL NOT NULL,
+  above_per_sr REAL NOT NULL,
+  PRIMARY KEY (calibration_id, point_index),
+  FOREIGN KEY (calibration_id, point_index) REFERENCES brdf
+) STRICT, WITHOUT ROWID;
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2,  kVersion3,  kVersion4,
+                                                              kVersion5, kVersion6,  kVersion7,  kVersion8,
+                                                              kVersion9, kVersion10, kVersion11, kVersion12};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

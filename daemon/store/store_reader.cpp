@@ -408,8 +408,8 @@ class SqliteStoreReader final : public StoreReader {
   BrdfInfo read_brdf(ScanId id) {
     BrdfInfo info;
     Statement& newest = database_->statement(
-        "SELECT calibration_id, code_version, inputs_json, component_names_json, versions FROM calibration WHERE "
-        "scan_id = ? "
+        "SELECT calibration_id, code_version, inputs_json, component_names_json, versions, sizes_only_json FROM "
+        "calibration WHERE scan_id = ? "
         "ORDER BY calibration_id DESC LIMIT 1");
     newest.bind(id);
     while (newest.next()) {
@@ -419,6 +419,8 @@ class SqliteStoreReader final : public StoreReader {
       const auto names = nlohmann::json::parse(newest.text(3), nullptr, false);
       if (names.is_array()) info.component_names = names.get<std::vector<std::string>>();
       info.versions = version_list_from(newest.text(4));
+      const auto sizes_only = nlohmann::json::parse(newest.text(5), nullptr, false);
+      if (sizes_only.is_array()) info.sizes_only = sizes_only.get<std::vector<std::uint32_t>>();
     }
     Statement& query = database_->statement(
         "SELECT point_index, value_per_sr, u_random_per_sr, effective_dof, flags, theta_i_deg, phi_i_deg, theta_r_deg, "
@@ -438,7 +440,22 @@ class SqliteStoreReader final : public StoreReader {
                                                .phi_r = degrees(query.real(8))},
                                   .sensitivities_per_sr = {sensitivities.begin(), sensitivities.end()}});
     }
+    read_intervals(info);
     return info;
+  }
+
+  // Few rows have one; both lists ascend by point.
+  void read_intervals(BrdfInfo& info) {
+    Statement& query = database_->statement(
+        "SELECT point_index, u_per_sr, below_per_sr, above_per_sr FROM brdf_interval WHERE calibration_id = ? ORDER BY "
+        "point_index");
+    query.bind(info.calibration);
+    auto row = info.rows.begin();
+    while (query.next()) {
+      row = std::ranges::lower_bound(row, info.rows.end(), query.integer(0), {}, &BrdfRow::point);
+      if (row == info.rows.end()) return;
+      row->interval = {.u_per_sr = query.real(1), .below_per_sr = query.real(2), .above_per_sr = query.real(3)};
+    }
   }
 
   std::unique_ptr<Database> database_;

@@ -78,6 +78,7 @@ struct BrdfInfo {
   std::vector<std::string> component_names;
   std::vector<BrdfRow> rows;  ///< by point
   std::vector<CalibrationVersion> versions{};
+  std::vector<std::uint32_t> sizes_only{};  ///< as NewBrdf::sizes_only
 };
 
 /// A change of what counts.

@@ -96,7 +96,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointReport, index, rank, theta_
                                                 phi_r_deg, wavelength_nm, blocked, sample, reference, attempts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfReport, point, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,
                                                 wavelength_nm, brdf_per_sr, u_random_per_sr, u_shared_per_sr,
-                                                u_own_per_sr, u_per_sr, k, expanded_u_per_sr, status, flags)
+                                                u_own_per_sr, u_per_sr, k, expanded_u_per_sr, below_per_sr,
+                                                above_per_sr, status, flags)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointPage, points, next_after)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BrdfPage, values, next_after)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ScanList, scans)

@@ -241,6 +241,9 @@ struct BrdfReport {
   std::optional<double> u_per_sr;
   std::optional<double> k;  ///< coverage factor of 95.45 %, by the degrees of freedom
   std::optional<double> expanded_u_per_sr;
+  std::optional<double>
+      below_per_sr;  ///< the 95.45 % interval is [brdf - below, brdf + above]; U is the larger of both
+  std::optional<double> above_per_sr;
   std::string status;  ///< "accepted", "blocked", "skipped", "refused", "unmeasured"
   std::string flags;   ///< words, separated by blanks
 };

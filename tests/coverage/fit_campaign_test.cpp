@@ -28,12 +28,8 @@ constexpr std::uint64_t kRepetitions = 400;
 
 MeasuredScan measured_scan_of(const calibration::CalibratedScan& calibrated) {
   MeasuredScan scan{.name = "calibrated"};
-  // What the readings do not resolve, and what a lamp or a dark level did between two visits, has a size and no known
-  // course.
   for (const calibration::Component& c : calibrated.components) {
-    const auto names = [&](const char* word) { return c.name.find(word) != std::string::npos; };
-    const bool is_known = !(names("unresolved") || names("lamp after") || names("drift"));
-    scan.components.push_back({.name = c.name, .source = "", .is_pattern_known = is_known});
+    scan.components.push_back({.name = c.name, .source = "", .is_pattern_known = c.is_pattern_known});
   }
   for (const calibration::CalibratedPoint& p : calibrated.points) {
     reflectance::MeasuredPoint& point = scan.points.emplace_back();

@@ -61,7 +61,7 @@ TEST_P(EndToEnd, ExportsEveryPointWithUnitsAndWhereItCameFrom) {
   const std::vector<std::string> names{"point",           "theta_i_deg",   "phi_i_deg",   "theta_r_deg",
                                        "phi_r_deg",       "wavelength_nm", "brdf_per_sr", "u_random_per_sr",
                                        "u_shared_per_sr", "u_per_sr",      "k",           "expanded_u_per_sr",
-                                       "status",          "flags"};
+                                       "below_per_sr",    "above_per_sr",  "status",      "flags"};
   EXPECT_EQ(table.names, names);
   EXPECT_GE(table.metadata.size(), 8U) << "scan, sample, hashes, reference, versions, times, k";
   ASSERT_EQ(table.rows.size(), static_cast<std::size_t>(kPoints));

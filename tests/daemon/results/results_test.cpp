@@ -26,6 +26,20 @@ TEST(StoredBudget, FewDegreesOfFreedomWidenTheInterval) {
   EXPECT_NEAR(budget_of(row).k, 2.28, 0.005);  // JCGM 100:2008, table G.2, p = 95.45 %, nu = 10
 }
 
+TEST(StoredBudget, HasTheIntervalThatItsRowStatesInsteadOfOneOfItsTerms) {
+  const BrdfRow row{.value_per_sr = 1.0,
+                    .u_random_per_sr = 0.1,
+                    .interval = StoredInterval{.u_per_sr = 0.2, .below_per_sr = 0.3, .above_per_sr = 0.5}};
+
+  const StoredBudget budget = budget_of(row);
+
+  EXPECT_EQ(budget.u_per_sr, 0.2);
+  EXPECT_EQ(budget.below_per_sr, 0.3);
+  EXPECT_EQ(budget.above_per_sr, 0.5);
+  EXPECT_EQ(budget.expanded_per_sr, 0.5);
+  EXPECT_DOUBLE_EQ(budget.k, 2.5);
+}
+
 TEST(RelativeUncertainty, LeavesOutWhatIsNotToldFromZero) {
   BrdfInfo brdf;
   const auto near_zero = static_cast<std::uint32_t>(calibration::PointFlag::NearZero);

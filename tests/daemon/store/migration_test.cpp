@@ -168,6 +168,24 @@ TEST_F(OldStore, OfVersion1HasPlansWithoutFilesAndPointsThatAreMeasuredOnce) {
   EXPECT_EQ(points->back().point.repeat, 1);
 }
 
+TEST_F(OldStore, OfVersion1KeepsItsBrdfWithIntervalsOfItsOwnTermsAndTheSignsThatItsNamesTold) {
+  write("version_1.sql");
+  SQLite::Database(path_, SQLite::OPEN_READWRITE)
+      .exec(
+          "INSERT INTO calibration VALUES (7, 1, 'old', '{}', "
+          "'[\"certificate\",\"zero theta_i through unresolved slopes\",\"dark drift 1 to 5\"]', 8);"
+          "INSERT INTO brdf VALUES (7, 1, 0, 0.3, 0.001, 0.0, 0, 0.0, 0.0, 30.0, 0.0, x'')");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+
+  const auto brdf = (*StoreReader::open(path_))->brdf(1);
+
+  ASSERT_TRUE(brdf) << describe(brdf.error());
+  EXPECT_EQ(brdf->sizes_only, (std::vector<std::uint32_t>{1, 2}));
+  ASSERT_EQ(brdf->rows.size(), 1U);
+  EXPECT_FALSE(brdf->rows[0].interval.has_value());
+}
+
 TEST_F(OldStore, OfVersion1HasFoundNothingByCalibrationJobs) {
   write("version_1.sql");
   const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);

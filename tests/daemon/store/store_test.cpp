@@ -303,6 +303,29 @@ TEST_F(Store, TheNewestBrdfComesBackWithItsSensitivities) {
   EXPECT_EQ(brdf->rows[0].sensitivities_per_sr, second.rows[0].sensitivities_per_sr);
   EXPECT_TRUE(std::isinf(brdf->rows[0].effective_dof));
   EXPECT_EQ(brdf->rows[0].flags, 5U);
+  EXPECT_TRUE(brdf->sizes_only.empty());
+  EXPECT_FALSE(brdf->rows[0].interval.has_value());
+}
+
+TEST_F(Store, ABrdfKeepsLopsidedIntervalsAndWhichComponentsHaveNoKnownSign) {
+  const ScanId id = accept_scan();
+  const StoredInterval lopsided{.u_per_sr = 0.011, .below_per_sr = 0.02, .above_per_sr = 0.03};
+  const NewBrdf written{.scan = id,
+                        .code_version = "1",
+                        .inputs_json = "{}",
+                        .component_names = {"certificate", "zero of theta_r", "zero of theta_r through slopes"},
+                        .rows = {BrdfRow{.point = 0, .value_per_sr = 0.31},
+                                 BrdfRow{.point = 1, .value_per_sr = 0.32, .interval = lopsided}},
+                        .sizes_only = {2}};
+  ASSERT_TRUE(commit({written}));
+
+  const auto brdf = open_reader()->brdf(id);
+
+  ASSERT_TRUE(brdf) << describe(brdf.error());
+  EXPECT_EQ(brdf->sizes_only, written.sizes_only);
+  ASSERT_EQ(brdf->rows.size(), 2U);
+  EXPECT_FALSE(brdf->rows[0].interval.has_value());
+  EXPECT_EQ(brdf->rows[1].interval, lopsided);
 }
 
 TEST_F(Store, WhatIsNotOverIsRestoredWithItsDecisionsAndDebts) {
