@@ -27,10 +27,11 @@ constexpr auto kOwnPurpose = static_cast<sim::Purpose>(1001);
 
 // Components whose input is disturbed below; all others are drawn from what the budget states.
 bool is_carried_by_inputs(std::string_view name) {
-  constexpr std::array<std::string_view, 17> kCarried = {
-      "noise of",       "monitor noise", "reproducibility of", "angle repeatability", "certificate",      "shape mode",
-      "shape integral", "zero theta_i",  "zero theta_r",       "zero phi_r",          "exposure offset",  "linearity",
-      "lamp after",     "dark visit",    "dark drift",         "reference",           "gain of the range"};
+  constexpr std::array<std::string_view, 19> kCarried = {
+      "noise of",        "monitor noise",     "reproducibility of", "angle repeatability", "certificate",
+      "shape mode",      "shape integral",    "zero theta_i",       "zero theta_r",        "zero phi_r",
+      "exposure offset", "linearity",         "lamp after",         "dark visit",          "dark drift",
+      "reference",       "gain of the range", "ambient visit",      "trap visit"};
   if (name.find("unresolved") != std::string_view::npos) return false;
   if (name.starts_with("zero ") && name.find("in the range") != std::string_view::npos) return true;
   return std::ranges::any_of(kCarried, [&](std::string_view start) { return name.starts_with(start); });
@@ -64,10 +65,33 @@ std::vector<double> draw_joint(const std::vector<double>& covariance, sim::Chanc
   return drawn;
 }
 
+// DN/s above the dark that readings have beside the light of their target: what the trap shows, or else a closed
+// source.
+double background_rate(const ScanReadings& measured, const sim::DetectorSpec& detector) {
+  double rate = 0.0;
+  for (const Target target : {Target::Ambient, Target::Trap}) {
+    double net = 0.0, exposure_s = 0.0;
+    for (const RawReading& reading : measured.readings) {
+      if (reading.target != target) continue;
+      for (const RawFrame& frame : reading.frames) {
+        net += frame.region.mean - detector.offset_dn - detector.dark_dn_per_s * frame.exposure_s;
+        exposure_s += frame.exposure_s;
+      }
+    }
+    if (exposure_s > 0.0) rate = net / exposure_s;
+  }
+  return rate;
+}
+
 class Disturber {
  public:
   Disturber(const PreparedScene& prepared, const sim::Truth& truth, const ScanReadings& measured)
-      : scene_(prepared.base), plan_(prepared.scene.plan), told_(prepared.told), truth_(truth), measured_(measured) {
+      : scene_(prepared.base),
+        plan_(prepared.scene.plan),
+        told_(prepared.told),
+        truth_(truth),
+        measured_(measured),
+        background_dn_per_s_(background_rate(measured, prepared.base.detector)) {
     const sim::SpectralonShape shape;
     for (const sim::ShapeMode& mode : scene_.reference.modes) {
       const std::vector<sim::ShapeMode> one = {mode};
@@ -181,7 +205,9 @@ class Disturber {
     const double x = net / told_.detector.full_scale_dn;
     double straight = 1.0;  // by the true curve over the told one
     for (std::size_t k = 0; k < d.curve.size(); ++k) straight += d.curve[k] * std::pow(x, static_cast<double>(k + 1));
-    const double bent = net * light * longer / straight;
+    const bool is_lit = target == Target::Sample || target == Target::Reference;
+    const double beside = is_lit ? background_dn_per_s_ * frame.exposure_s : 0.0;  // whatever the target does
+    const double bent = ((net - beside) * light + beside) * longer / straight;
     frame.region.mean = (target == Target::Dark ? frame.region.mean : dark) +
                         bent * (1.0 + d.linearity * bent / told_.detector.full_scale_dn) + noise * chance.normal();
     if (target != Target::Dark) frame.region.mean += dark_drift * frame.exposure_s;
@@ -207,6 +233,7 @@ class Disturber {
   const calibration::InstrumentModel& told_;
   const sim::Truth& truth_;
   const ScanReadings& measured_;
+  double background_dn_per_s_;
   std::vector<double> mode_means_;
 };
 

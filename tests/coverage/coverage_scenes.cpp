@@ -294,6 +294,11 @@ void add_bench_scenes(std::vector<CoverageScene>& list) {
                   .fails_for = "too wide: curvature that the points leave unresolved is taken for larger than it is"});
 }
 
+/// Room light, from that of `ambient` = 0 to twice as much at 1, and stray light of the lamp.
+sim::StraySpec background(double ambient, double source_share) {
+  return {.ambient_electrons_per_s = 50.0 * (1.0 + ambient), .source_share = source_share, .internal_share = 0.0};
+}
+
 void add_stray_scenes(std::vector<CoverageScene>& list) {
   constexpr double kDegree = 0.01;
   list.push_back(
@@ -327,11 +332,8 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                   .file = "dark",
                   .first_seed = 29'000'000,
                   .plan = lit,
-                  .draw = [](Scene& s, Chance& chance) {
-                    s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
-                                                     .source_share = 0.0,
-                                                     .internal_share = 0.0};
-                  }});
+                  .bend = [](Scene& s) { s.effects.stray = background(0.5, 0.0); },
+                  .draw = [](Scene& s, Chance& chance) { s.effects.stray = background(chance.uniform(), 0.0); }});
   ScanPlan visited = lit;
   visited.trap_visits = true;
   list.push_back({.name = "stray",
@@ -339,11 +341,12 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
                   .file = "dark",
                   .first_seed = 26'000'000,
                   .plan = visited,
-                  .draw = [](Scene& s, Chance& chance) {
-                    s.effects.stray = sim::StraySpec{.ambient_electrons_per_s = 50.0 * (1.0 + chance.uniform()),
-                                                     .source_share = 1e-4 * (1.0 + chance.uniform()),
-                                                     .internal_share = 0.0};
-                  }});
+                  .bend = [](Scene& s) { s.effects.stray = background(0.5, 1.5e-4); },
+                  .draw =
+                      [](Scene& s, Chance& chance) {
+                        const double ambient = chance.uniform();
+                        s.effects.stray = background(ambient, 1e-4 * (1.0 + chance.uniform()));
+                      }});
 }
 
 void add_anchor_scenes(std::vector<CoverageScene>& list) {
