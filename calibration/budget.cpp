@@ -43,7 +43,7 @@ void merge_terms(std::vector<BudgetTerm>& terms, Add add) {
   std::erase_if(terms, [](const BudgetTerm& term) { return term.per_sd == Brdf{}; });
 }
 
-double sum_of_squares(const std::vector<BudgetTerm>& terms) {
+double sum_of_squares(std::span<const BudgetTerm> terms) {
   double sum = 0.0;
   for (const BudgetTerm& term : terms) sum += square(term.per_sd.si());
   return sum;
@@ -109,13 +109,11 @@ double coverage_factor(double degrees_of_freedom) {
   return 0.5 * (low + high);
 }
 
-Budget make_budget_in_place(std::span<const Component> components, std::vector<BudgetTerm>& random,
-                            std::vector<BudgetTerm>& shared) {
+Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm>& random,
+                   std::vector<BudgetTerm>& shared) {
   merge_terms(random, [](Brdf a, Brdf b) { return Brdf::from_si(std::hypot(a.si(), b.si())); });
   merge_terms(shared, [](Brdf a, Brdf b) { return a + b; });
-  Budget budget;
-  budget.random.assign(random.begin(), random.end());
-  budget.shared.assign(shared.begin(), shared.end());
+  Budget budget{.random = random, .shared = shared};
   const double random2 = sum_of_squares(budget.random);
   const double shared2 = sum_of_squares(budget.shared);
   const double u = std::sqrt(random2 + shared2);
@@ -142,11 +140,6 @@ Budget make_budget_in_place(std::span<const Component> components, std::vector<B
   budget.expanded = budget.k * budget.u;
   budget.below = budget.above = budget.expanded;
   return budget;
-}
-
-Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
-                   std::vector<BudgetTerm> shared) {
-  return make_budget_in_place(components, random, shared);
 }
 
 Measured<Brdf> weighted_sum(std::span<const SumTerm> terms) {

@@ -44,10 +44,11 @@ struct BudgetTerm {
   friend bool operator==(const BudgetTerm&, const BudgetTerm&) = default;
 };
 
-/// The uncertainty of one value. Terms of the same component never come twice; both lists ascend by component.
+/// The uncertainty of one value. Terms of the same component never come twice. Both lists live as long as those that
+/// the budget was made from: of a scan's point, as long as the scan or a copy of it.
 struct Budget {
-  std::vector<BudgetTerm> random;
-  std::vector<BudgetTerm> shared;
+  std::span<const BudgetTerm> random;
+  std::span<const BudgetTerm> shared;
   Brdf u_random;  ///< root sum of squares of `random`
   Brdf u_shared;  ///< root sum of squares of `shared`: components are independent of each other
   Brdf u;         ///< combined standard uncertainty u_c
@@ -62,13 +63,10 @@ struct Budget {
 };
 
 /// Sorts the terms, merges those of one component (random: root sum of squares; shared: signed sum), leaves out those
-/// that are 0, and adds all up: u_c, the effective degrees of freedom (JCGM 100:2008, eq G.2b), k and U.
-[[nodiscard]] Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm> random,
-                                 std::vector<BudgetTerm> shared);
-
-/// The same; both lists are left sorted and merged, for use again.
-[[nodiscard]] Budget make_budget_in_place(std::span<const Component> components, std::vector<BudgetTerm>& random,
-                                          std::vector<BudgetTerm>& shared);
+/// that are 0, and adds all up: u_c, the effective degrees of freedom (JCGM 100:2008, eq G.2b), k and U. Both lists are
+/// left sorted and merged: the budget's own.
+[[nodiscard]] Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm>& random,
+                                 std::vector<BudgetTerm>& shared);
 
 /// k for a level of confidence of 95.45 %: Student's t at p = 0.9545 for `degrees_of_freedom` > 0 (JCGM 100:2008, table
 /// G.2; it need not be whole), 2.000 for infinity.

@@ -7,10 +7,13 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "base/large_array.h"
 #include "calibration/component_table.h"
 #include "calibration/cone_correction.h"
 #include "calibration/direction_slopes.h"
@@ -20,8 +23,10 @@
 #include "calibration/point_equation.h"
 #include "calibration/reading_pairs.h"
 #include "calibration/scan_histories.h"
+#include "calibration/scan_tally.h"
 #include "calibration/spectral_term.h"
 #include "calibration/term_list.h"
+#include "calibration/term_store.h"
 
 namespace gonio::calibration {
 namespace {
@@ -51,18 +56,17 @@ struct Origin {
 /// A block of the scan on its way: points that have a pair of readings.
 struct DraftBlock {
   std::size_t first = 0;  ///< of its points, among all with a value
-  std::vector<PairedPoint> pairs;
-  std::vector<Origin> origins;     ///< as many
-  std::vector<SlopePoint> places;  ///< as many, until they are joined
+  LargeArray<PairedPoint> pairs;
+  std::vector<Origin> origins;    ///< as many
+  LargeArray<SlopePoint> places;  ///< as many, until they are joined
   std::vector<RefusedPoint> refused;
-  double frame_chi2 = 0.0;
-  double frame_dof = 0.0;
+  ScanTally tally;
 };
 
 /// The scan on its way. Blocks are never joined: a pair of readings is some kilobyte.
 struct Draft {
   std::vector<DraftBlock> blocks;
-  std::vector<SlopePoint> places;  ///< of all blocks
+  LargeArray<SlopePoint> places;  ///< of all blocks
 };
 
 /// All that every point of a scan is made with.
@@ -98,8 +102,8 @@ void keep_pair(const PlannedPoint& point, const ReadingPair& readings, PairedPoi
                           .value = per_steradian(pair.value),
                           .u_random = scatter(pair, shop.instrument),
                           .state = static_cast<std::int32_t>(point.polarisation)});
-  draft.frame_chi2 += pair.sample.frame_chi2 + pair.reference.frame_chi2;
-  draft.frame_dof += pair.sample.frame_dof + pair.reference.frame_dof;
+  draft.tally.frame_chi2 += pair.sample.frame_chi2 + pair.reference.frame_chi2;
+  draft.tally.frame_dof += pair.sample.frame_dof + pair.reference.frame_dof;
   draft.pairs.push_back(std::move(pair));
 }
 
@@ -124,28 +128,37 @@ DraftBlock draft_block(const std::vector<ReadingPair>& pairs, std::size_t first,
       draft.refused.push_back({point.index, std::move(pair).error()});
     }
   }
+  draft.tally.refused = draft.refused.size();
   return draft;
 }
 
-Draft draft_scan(const Workshop& shop) {
-  const std::vector<ReadingPair> pairs = pair_readings(shop.scan);
+void join_places(Draft& draft, int threads) {
+  std::size_t points = 0;
+  for (DraftBlock& block : draft.blocks) {
+    block.first = points;
+    points += block.places.size();
+  }
+  draft.places.resize(points);
+  for_blocks(draft.blocks.size(), threads, [&](std::size_t number) {
+    DraftBlock& block = draft.blocks[number];
+    std::ranges::copy(block.places, draft.places.begin() + static_cast<std::ptrdiff_t>(block.first));
+    block.places = {};
+  });
+}
+
+Draft draft_scan(const Workshop& shop, const std::vector<ReadingPair>& pairs) {
   Draft draft;
   draft.blocks.resize(blocks_of(pairs.size()));
   for_blocks(draft.blocks.size(), shop.options.threads, [&](std::size_t block) {
     const std::size_t first = block * kPointsInBlock;
     draft.blocks[block] = draft_block(pairs, first, std::min(pairs.size(), first + kPointsInBlock), shop);
   });
-  draft.places.reserve(pairs.size());
-  for (DraftBlock& block : draft.blocks) {
-    block.first = draft.places.size();
-    draft.places.insert(draft.places.end(), block.places.begin(), block.places.end());
-    block.places = {};
-  }
+  join_places(draft, shop.options.threads);
   return draft;
 }
 
 std::vector<SpectralSlope> spectral_slopes_of(const Draft& draft, const InstrumentModel& instrument) {
-  if (!instrument.spectral) return std::vector<SpectralSlope>(draft.places.size());
+  if (!instrument.spectral) return {};
   std::vector<SpectralPoint> points;
   for (const DraftBlock& block : draft.blocks) {
     for (const PairedPoint& pair : block.pairs) {
@@ -189,8 +202,8 @@ std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const Dire
 
 /// What is known of a scan's neighbourhoods once all of its points have a value.
 struct Neighbourhoods {
-  std::vector<DirectionSlopes> slopes;
-  std::vector<SpectralSlope> spectral;
+  SlopeField slopes;
+  std::vector<SpectralSlope> spectral;  ///< empty: the instrument states none
 };
 
 CalibratedPoint finish_point(std::size_t n, const Neighbourhoods& around, const Workshop& shop, const Origin& origin,
@@ -202,12 +215,13 @@ CalibratedPoint finish_point(std::size_t n, const Neighbourhoods& around, const 
                         .budget = {},
                         .sample_reading = origin.sample_reading,
                         .reference_reading = pair.reference_id};
-  const DirectionSlopes& slopes = around.slopes[n];
+  const DirectionSlopes slopes = around.slopes.at(n);
   const ConeCorrection cones = cone_correction(pair, slopes, shop.instrument, shop.standard);
   if (!shop.options.left_out.cones) pair.value -= cones.bias;
   point.value = per_steradian(pair.value);
   terms.clear();
-  shop.rules.add_terms(pair, slopes, cones, around.spectral[n], terms);
+  const SpectralSlope spectral = around.spectral.empty() ? SpectralSlope{} : around.spectral[n];
+  shop.rules.add_terms(pair, slopes, cones, spectral, terms);
   point.budget = terms.budget();
   const MonteCarloUse use = shop.options.monte_carlo;
   const Nonlinearity bent = shop.rules.nonlinearity(pair, slopes);
@@ -222,70 +236,42 @@ CalibratedPoint finish_point(std::size_t n, const Neighbourhoods& around, const 
   return point;
 }
 
-// From a block's numbers of the components to the scan's.
-void renumber(Budget& budget, const std::vector<std::uint32_t>& numbers) {
-  for (auto* terms : {&budget.random, &budget.shared}) {
-    for (BudgetTerm& term : *terms) term.component = numbers[term.component];
-    std::ranges::sort(*terms, {}, &BudgetTerm::component);
+void finish_block(const Neighbourhoods& around, const Workshop& shop, DraftBlock& block, ComponentTable& table,
+                  TermStore& store, std::span<CalibratedPoint> points) {
+  store = TermStore(block.pairs.size());
+  TermList terms(table);
+  for (std::size_t k = 0; k < block.pairs.size(); ++k) {
+    CalibratedPoint& point = points[k];
+    point = finish_point(block.first + k, around, shop, block.origins[k], block.pairs[k], terms);
+    point.budget.random = store.keep(point.budget.random);
+    point.budget.shared = store.keep(point.budget.shared);
+    block.tally.add(point);
   }
+  block.pairs = {};
 }
 
-std::vector<Component> finish_points(const Neighbourhoods& around, const Workshop& shop, Draft& draft,
-                                     std::vector<CalibratedPoint>& points) {
-  points.resize(draft.places.size());
-  std::vector<ComponentTable> tables(draft.blocks.size());
-  for_blocks(tables.size(), shop.options.threads, [&](std::size_t number) {
-    DraftBlock& block = draft.blocks[number];
-    TermList terms(tables[number]);
-    for (std::size_t k = 0; k < block.pairs.size(); ++k) {
-      points[block.first + k] = finish_point(block.first + k, around, shop, block.origins[k], block.pairs[k], terms);
-    }
-    block.pairs = {};
-  });
-  if (tables.size() == 1) return tables.front().components();
+// One table of all blocks' components; the terms count in it.
+std::vector<Component> join_components(const std::vector<ComponentTable>& tables, std::vector<TermStore>& terms,
+                                       int threads) {
   ComponentTable all;
   std::vector<std::vector<std::uint32_t>> numbers;
   for (const ComponentTable& table : tables) numbers.push_back(all.join(table));
-  for_blocks(tables.size(), shop.options.threads, [&](std::size_t number) {
-    const DraftBlock& block = draft.blocks[number];
-    for (std::size_t k = 0; k < block.origins.size(); ++k) renumber(points[block.first + k].budget, numbers[number]);
-  });
+  for_blocks(tables.size(), threads, [&](std::size_t block) { terms[block].renumber(numbers[block]); });
   return all.components();
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-ScanSummary summarise(const std::vector<CalibratedPoint>& points, const Draft& draft) {
-  ScanSummary summary{.points = points.size()};
-  std::vector<double> absolute;
-  std::vector<double> relative;
-  absolute.reserve(points.size());
-  relative.reserve(points.size());
-  for (const CalibratedPoint& point : points) {
-    absolute.push_back(point.budget.expanded.si());
-    if (has(point.flags, PointFlag::NearZero))
-      ++summary.near_zero;
-    else
-      relative.push_back(point.budget.expanded.si() / std::abs(point.value.si()));
-  }
-  double chi2 = 0.0;
-  double dof = 0.0;
-  for (const DraftBlock& block : draft.blocks) {
-    summary.refused += block.refused.size();
-    chi2 += block.frame_chi2;
-    dof += block.frame_dof;
-  }
-  summary.worst_relative_expanded = relative.empty() ? 0.0 : std::ranges::max(relative);
-  summary.median_relative_expanded = median(relative);
-  summary.median_expanded = per_steradian(median(absolute));
-  summary.frame_chi2_per_dof = dof > 0.0 ? chi2 / dof : 0.0;
-  return summary;
+void finish_points(const Neighbourhoods& around, const Workshop& shop, Draft& draft, CalibratedScan& scan) {
+  scan.points.resize(draft.places.size());
+  const std::span<CalibratedPoint> points = scan.points;
+  const auto store = std::make_shared<std::vector<TermStore>>(draft.blocks.size());
+  std::vector<ComponentTable> tables(draft.blocks.size());
+  for_blocks(tables.size(), shop.options.threads, [&](std::size_t number) {
+    DraftBlock& block = draft.blocks[number];
+    finish_block(around, shop, block, tables[number], (*store)[number],
+                 points.subspan(block.first, block.pairs.size()));
+  });
+  scan.components = join_components(tables, *store, shop.options.threads);
+  scan.terms = store;
 }
 
 }  // namespace
@@ -326,16 +312,26 @@ Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel
                                  const ReferenceStandard& standard, UtcTime measured_on,
                                  const CalibrationOptions& options) {
   GONIO_TRY(standard.check_date(measured_on));
-  const Workshop shop(scan, instrument, standard, options);
-  Draft draft = draft_scan(shop);
-  const Neighbourhoods around{.slopes = direction_slopes(draft.places, scan.isotropic, options.threads),
+  std::vector<ReadingPair> pairs;
+  std::optional<Workshop> shop;
+  for_blocks(2, options.threads, [&](std::size_t which) {
+    if (which == 0) {
+      pairs = pair_readings(scan);
+    } else {
+      shop.emplace(scan, instrument, standard, options);
+    }
+  });
+  Draft draft = draft_scan(*shop, pairs);
+  const Neighbourhoods around{.slopes = SlopeField(draft.places, scan.isotropic, options.threads),
                               .spectral = spectral_slopes_of(draft, instrument)};
   CalibratedScan calibrated;
-  calibrated.components = finish_points(around, shop, draft, calibrated.points);
-  calibrated.summary = summarise(calibrated.points, draft);
+  finish_points(around, *shop, draft, calibrated);
+  std::vector<ScanTally> tallies;
   for (DraftBlock& block : draft.blocks) {
+    tallies.push_back(std::move(block.tally));
     std::ranges::move(block.refused, std::back_inserter(calibrated.refused));
   }
+  calibrated.summary = summary_of(tallies, options.threads);
   return calibrated;
 }
 

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
 #include "base/geometry.h"
+#include "base/large_array.h"
 #include "base/units.h"
 #include "calibration/budget.h"
+#include "calibration/term_store.h"
 
 namespace gonio::calibration {
 
@@ -65,9 +68,10 @@ struct ScanSummary {
 
 /// What readings, instrument and standard make of a scan.
 struct CalibratedScan {
-  std::vector<Component> components;    ///< what the budgets' terms count in
-  std::vector<CalibratedPoint> points;  ///< in the order of the planned points
-  std::vector<RefusedPoint> refused;    ///< likewise; points without a sample reading stand in neither
+  std::vector<Component> components;                    ///< what the budgets' terms count in
+  std::shared_ptr<const std::vector<TermStore>> terms;  ///< the budgets' own; copies of the scan share them
+  LargeArray<CalibratedPoint> points;                   ///< in the order of the planned points
+  std::vector<RefusedPoint> refused;                    ///< likewise; points without a sample reading stand in neither
   ScanSummary summary;
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibration/budget.h"
+#include "calibration/key_numbers.h"
 
 namespace gonio::calibration {
 
@@ -62,59 +63,34 @@ class ComponentTable {
     std::int64_t b = 0;
     std::int64_t c = 0;
     friend bool operator==(const Key&, const Key&) = default;
+    [[nodiscard]] std::size_t hash() const { return mixed({static_cast<std::int64_t>(source), a, b, c}); }
   };
 
   /// The component's index; `make` is only asked when it is new.
   template <class Make>
   std::uint32_t index(const Key& key, const Make& make) {
-    if (2 * (keys_.size() + 1) > slots_.size()) grow();
-    std::size_t slot = hash(key) & (slots_.size() - 1);
-    for (; slots_[slot] != kFree; slot = (slot + 1) & (slots_.size() - 1)) {
-      if (keys_[slots_[slot]] == key) return slots_[slot];
-    }
-    slots_[slot] = static_cast<std::uint32_t>(keys_.size());
-    keys_.push_back(key);
-    components_.push_back(make());
-    return slots_[slot];
+    const std::uint32_t number = numbers_.number_of(key);
+    if (number == components_.size()) components_.push_back(make());
+    return number;
   }
+  /// The components of another point follow, likely in the order of the first one's.
+  void begin_point() { numbers_.expect(0); }
 
   [[nodiscard]] const std::vector<Component>& components() const { return components_; }
 
   /// Takes up another table's components. [n]: the index here of its component n.
   std::vector<std::uint32_t> join(const ComponentTable& other) {
     std::vector<std::uint32_t> indices;
-    for (std::size_t n = 0; n < other.keys_.size(); ++n) {
-      indices.push_back(index(other.keys_[n], [&] { return other.components_[n]; }));
+    const std::vector<Key>& keys = other.numbers_.keys();
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+      indices.push_back(index(keys[n], [&] { return other.components_[n]; }));
     }
     return indices;
   }
 
  private:
-  static constexpr std::uint32_t kFree = ~std::uint32_t{0};
-
-  static std::size_t hash(const Key& key) {  // SplitMix64's steps (Steele, Lea and Flood 2014)
-    constexpr std::uint64_t kMix = 0xBF58476D1CE4E5B9ULL;
-    std::uint64_t z = static_cast<std::uint64_t>(key.source) * kMix;
-    for (const std::int64_t part : {key.a, key.b, key.c}) {
-      z = (z ^ static_cast<std::uint64_t>(part)) * kMix;
-      z ^= z >> 29U;
-    }
-    return z;
-  }
-
-  void grow() {
-    constexpr std::size_t kFirst = 128;
-    slots_.assign(slots_.empty() ? kFirst : 2 * slots_.size(), kFree);
-    for (std::size_t n = 0; n < keys_.size(); ++n) {
-      std::size_t slot = hash(keys_[n]) & (slots_.size() - 1);
-      while (slots_[slot] != kFree) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = static_cast<std::uint32_t>(n);
-    }
-  }
-
   std::vector<Component> components_;
-  std::vector<Key> keys_;
-  std::vector<std::uint32_t> slots_;  ///< open addressing; a power of two
+  KeyNumbers<Key> numbers_;
 };
 
 }  // namespace gonio::calibration

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <optional>
 
 #include "calibration/direction_lines.h"
 #include "calibration/parallel_blocks.h"
@@ -12,27 +10,13 @@
 namespace gonio::calibration {
 namespace {
 
-constexpr double kFarthest = 0.25 * std::numbers::pi;  // a polynomial over more than 45 deg says nothing of a slope
-constexpr double kSamePlace = 2e-4;                    // 0.01 deg: closer neighbours give noise over nothing
+constexpr double kSamePlace = 2e-4;  // 0.01 deg: closer neighbours give noise over nothing
 constexpr std::size_t kNeighboursAtMost = 4;
 constexpr std::size_t kNodesAtMost = kNeighboursAtMost + 1;
 
-std::size_t axis_index(DirectionAxis axis) {
-  return static_cast<std::size_t>(axis);
-}
-
-/// A value as it is to be differentiated: ln f where it stands clear of zero, and f itself.
-struct Ordinate {
-  double f = 0.0;
-  double u = 0.0;
-  double log_f = 0.0;
-  double u_log = 0.0;
-  bool has_logarithm = false;
-};
-
-Ordinate ordinate_of(const SlopePoint& p) {
+SlopeOrdinate ordinate_of(const SlopePoint& p) {
   constexpr double kClearOfZero = 5.0;  // standard uncertainties: then ln f is normal too
-  Ordinate o{.f = p.value.si(), .u = p.u_random.si()};
+  SlopeOrdinate o{.f = p.value.si(), .u = p.u_random.si()};
   o.has_logarithm = o.f > kClearOfZero * o.u && o.f > 0.0;
   if (o.has_logarithm) {
     o.log_f = std::log(o.f);
@@ -48,43 +32,43 @@ struct Nodes {
 };
 
 // A point's own mirror images: with another neighbour they say how the line bends, for it is even.
-void add_own_images(std::span<const LineStop> line, std::size_t own, Nodes& nodes) {
+void add_own_images(const LineStop& own, Nodes& nodes) {
   if (nodes.size < 2) return;
   const auto add = [&](const LineStop& stop) {
-    if (stop.point != line[own].point || nodes.size == kNodesAtMost) return;
+    if (stop.point != own.point || nodes.size == kNodesAtMost) return;
     for (std::size_t n = 0; n < nodes.size; ++n) {
       if (std::abs(stop.coordinate - nodes.stop[n]->coordinate) < kSamePlace) return;
     }
     nodes.stop[nodes.size++] = &stop;
   };
-  const double x0 = line[own].coordinate;
-  for (std::size_t n = own; n-- > 0 && x0 - line[n].coordinate < kFarthest;) add(line[n]);
-  for (std::size_t n = own + 1; n < line.size() && line[n].coordinate - x0 < kFarthest; ++n) add(line[n]);
+  const double x0 = own.coordinate;
+  for (const LineStop* stop = &own - 1; x0 - stop->coordinate < kFarthestStop; --stop) add(*stop);
+  for (const LineStop* stop = &own + 1; stop->coordinate - x0 < kFarthestStop; ++stop) add(*stop);
 }
 
 // The nearest stops of a sorted line; of two as near, the one below. A point's own mirror image comes last: alone it
 // says that the line is even, and nothing of its slope.
-Nodes nodes_about(std::span<const LineStop> line, std::size_t own) {
-  Nodes nodes{.stop = {&line[own]}, .size = 1};
-  std::size_t below = own;
-  std::size_t above = own + 1;
-  const double x0 = line[own].coordinate;
+Nodes nodes_about(const LineStop& own) {
+  Nodes nodes{.stop = {&own}, .size = 1};
+  const LineStop* below = &own - 1;
+  const LineStop* above = &own + 1;
+  const double x0 = own.coordinate;
   double last_below = x0;
   double last_above = x0;
   const auto is_useless = [&](const LineStop& stop, double last) {
-    return stop.point == line[own].point || std::abs(stop.coordinate - last) < kSamePlace;
+    return stop.point == own.point || std::abs(stop.coordinate - last) < kSamePlace;
   };
   while (nodes.size < kNodesAtMost) {
-    while (below > 0 && is_useless(line[below - 1], last_below)) --below;
-    while (above < line.size() && is_useless(line[above], last_above)) ++above;
-    const double down = below > 0 ? x0 - line[below - 1].coordinate : INFINITY;
-    const double up = above < line.size() ? line[above].coordinate - x0 : INFINITY;
-    if (std::min(down, up) > kFarthest) break;
-    const LineStop* next = down <= up + kSamePlace ? &line[--below] : &line[above++];
+    while (is_useless(*below, last_below)) --below;
+    while (is_useless(*above, last_above)) ++above;
+    const double down = x0 - below->coordinate;
+    const double up = above->coordinate - x0;
+    if (std::min(down, up) > kFarthestStop) break;
+    const LineStop* next = down <= up + kSamePlace ? below-- : above++;
     (next->coordinate < x0 ? last_below : last_above) = next->coordinate;
     nodes.stop[nodes.size++] = next;
   }
-  add_own_images(line, own, nodes);
+  add_own_images(own, nodes);
   return nodes;
 }
 
@@ -161,19 +145,18 @@ Derivative best_of(std::size_t size, std::size_t lowest, std::size_t first, Valu
   return best;
 }
 
-void read_stop(const std::vector<Ordinate>& ordinates, std::span<const LineStop> line, std::size_t own, std::size_t a,
-               DirectionSlopes& slopes) {
-  const Nodes nodes = nodes_about(line, own);
+void read_stop(std::span<const SlopeOrdinate> ordinates, const LineStop& own, std::size_t a, DirectionSlopes& slopes) {
+  const Nodes nodes = nodes_about(own);
   std::array<double, kNodesAtMost> y{};
   std::array<double, kNodesAtMost> u{};
   bool has_logarithm = true;
   for (std::size_t n = 0; n < nodes.size; ++n) has_logarithm &= ordinates[nodes.stop[n]->point].has_logarithm;
   for (std::size_t n = 0; n < nodes.size; ++n) {
-    const Ordinate& o = ordinates[nodes.stop[n]->point];
+    const SlopeOrdinate& o = ordinates[nodes.stop[n]->point];
     y[n] = has_logarithm ? o.log_f : o.f;
     u[n] = has_logarithm ? o.u_log : o.u;
   }
-  const double unit = has_logarithm ? ordinates[line[own].point].f : 1.0;
+  const double unit = has_logarithm ? ordinates[own.point].f : 1.0;
   const double bend = has_logarithm ? 1.0 : 0.0;  // f'' / f = g'' + g'^2
   const auto e = estimates(nodes, y, u);
   const Derivative first = best_of(
@@ -181,26 +164,12 @@ void read_stop(const std::vector<Ordinate>& ordinates, std::span<const LineStop>
   const Derivative second = best_of(
       nodes.size, 2, 2, [&](std::size_t p) { return e[p].second + bend * e[p].first * e[p].first; },
       [&](std::size_t p) { return e[p].second_noise2; });
-  slopes.slope[a] = static_cast<double>(line[own].sign) * unit * first.value;
+  slopes.slope[a] = static_cast<double>(own.sign) * unit * first.value;
   slopes.unresolved[a] = unit * first.missed;
   slopes.has_neighbours[a] = first.is_known;
   slopes.curvature[a] = unit * second.value;
   slopes.unresolved_curvature[a] = second.is_known ? unit * second.missed : -1.0;  // guessed below
   slopes.curvature_noise[a] = unit * second.noise;
-}
-
-void read_slopes(const std::vector<Ordinate>& ordinates, const DirectionLines& lines, DirectionAxis axis, int threads,
-                 std::vector<DirectionSlopes>& out) {
-  constexpr std::size_t kLinesAtOnce = 64;
-  for_blocks((lines.size() + kLinesAtOnce - 1) / kLinesAtOnce, threads, [&](std::size_t block) {
-    const std::size_t last = std::min(lines.size(), (block + 1) * kLinesAtOnce);
-    for (std::size_t n = block * kLinesAtOnce; n < last; ++n) {
-      const std::span<const LineStop> line = lines.line(n);
-      for (std::size_t s = 0; s < line.size(); ++s) {
-        if (!line[s].is_image) read_stop(ordinates, line, s, axis_index(axis), out[line[s].point]);
-      }
-    }
-  });
 }
 
 // Where phi means nothing, or where the mirror plane makes the function even, its slope is 0 without any neighbour.
@@ -259,26 +228,31 @@ void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
 
 }  // namespace
 
-std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic, int threads) {
+SlopeField::SlopeField(std::span<const SlopePoint> points, bool isotropic, int threads)
+    : points_(points), isotropic_(isotropic), ordinates_(points.size()) {
   constexpr std::size_t kPointsAtOnce = 4096;
-  std::vector<DirectionSlopes> slopes(points.size());
-  std::vector<Ordinate> ordinates(points.size());
-  const std::size_t blocks = (points.size() + kPointsAtOnce - 1) / kPointsAtOnce;
-  const auto for_points = [&](const auto& work) {
-    for_blocks(blocks, threads, [&](std::size_t block) {
-      const std::size_t last = std::min(points.size(), (block + 1) * kPointsAtOnce);
-      for (std::size_t n = block * kPointsAtOnce; n < last; ++n) work(n);
-    });
-  };
-  for_points([&](std::size_t n) { ordinates[n] = ordinate_of(points[n]); });
-  constexpr std::array kAxes = {DirectionAxis::ThetaI, DirectionAxis::ThetaR, DirectionAxis::PhiR};
-  std::array<std::optional<DirectionLines>, kDirectionAxes> lines;
-  for_blocks(kAxes.size(), threads, [&](std::size_t a) { lines[a].emplace(points, isotropic, kAxes[a]); });
-  for (std::size_t a = 0; a < kAxes.size(); ++a) read_slopes(ordinates, *lines[a], kAxes[a], threads, slopes);
-  for_points([&](std::size_t n) {
-    guess_slopes(points[n], isotropic, slopes[n]);
-    guess_curvatures(points[n], slopes[n]);
+  LargeArray<DirectionKey> keys(points.size());
+  for_blocks((points.size() + kPointsAtOnce - 1) / kPointsAtOnce, threads, [&](std::size_t block) {
+    const std::size_t last = std::min(points.size(), (block + 1) * kPointsAtOnce);
+    for (std::size_t n = block * kPointsAtOnce; n < last; ++n) {
+      keys[n] = direction_key(points[n], isotropic);
+      ordinates_[n] = ordinate_of(points[n]);
+    }
   });
+  for_blocks(kDirectionAxes, threads, [&](std::size_t axis) {
+    lines_[axis] = std::make_unique<DirectionLines>(points, keys, isotropic, static_cast<DirectionAxis>(axis));
+  });
+}
+
+SlopeField::~SlopeField() = default;
+
+DirectionSlopes SlopeField::at(std::size_t n) const {
+  DirectionSlopes slopes;
+  for (std::size_t axis = 0; axis < kDirectionAxes; ++axis) {
+    read_stop(ordinates_, lines_[axis]->stop_of(n), axis, slopes);
+  }
+  guess_slopes(points_[n], isotropic_, slopes);
+  guess_curvatures(points_[n], slopes);
   return slopes;
 }
 

@@ -3,10 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "base/geometry.h"
+#include "base/large_array.h"
 #include "base/units.h"
 
 namespace gonio::calibration {
@@ -18,7 +19,7 @@ inline constexpr std::size_t kDirectionAxes = 3;
 /// A measured value at its directions.
 struct SlopePoint {
   Geometry planned;   ///< says which points lie on one line
-  Geometry reported;  ///< says how far apart
+  Geometry reported;  ///< says how far apart; finite
   Wavelength wavelength;
   Brdf value;
   Brdf u_random;
@@ -36,6 +37,17 @@ struct DirectionSlopes {
       has_neighbours{};  ///< false: no other point on this line; `slope` is 0, `unresolved` a guess
 };
 
+/// A value as it is to be differentiated: ln f where it stands clear of zero, and f itself.
+struct SlopeOrdinate {
+  double f = 0.0;
+  double u = 0.0;
+  double log_f = 0.0;
+  double u_log = 0.0;
+  bool has_logarithm = false;
+};
+
+class DirectionLines;
+
 /// Slopes from the measured points alone; no model of the surface. For each point and axis:
 /// - its line holds the points of the same wavelength and polarisation whose other angles are planned equal (to 0.001
 ///   deg). A theta line runs through the normal into the opposite half plane; for an isotropic sample a point also
@@ -51,9 +63,23 @@ struct DirectionSlopes {
 ///   depends on the phase angle or on the tilt of a facet), phi as large as the larger of them times sin(theta_r), and
 ///   without any neighbour at all, |f| per radian; second derivatives likewise.
 /// Newton's divided differences (Abramowitz and Stegun 1964, 25.2.26): each neighbour adds one term.
-/// [points], in their order. O(n log n). Threads: its own, at most `threads` (0: as the machine has); the same bits for
-/// any number.
-[[nodiscard]] std::vector<DirectionSlopes> direction_slopes(std::span<const SlopePoint> points, bool isotropic,
-                                                            int threads = 1);
+/// Made in O(n log n); a point is read in O(1), from what lies about it in memory too. Immutable; threads: any.
+class SlopeField {
+ public:
+  /// `points` must outlive it. Made on up to `threads` threads (0: as the machine has); the same bits for any number.
+  SlopeField(std::span<const SlopePoint> points, bool isotropic, int threads = 1);
+  ~SlopeField();
+  SlopeField(const SlopeField&) = delete;
+  SlopeField& operator=(const SlopeField&) = delete;
+
+  /// Of points[n].
+  [[nodiscard]] DirectionSlopes at(std::size_t n) const;
+
+ private:
+  std::span<const SlopePoint> points_;
+  bool isotropic_;
+  LargeArray<SlopeOrdinate> ordinates_;
+  std::array<std::unique_ptr<const DirectionLines>, kDirectionAxes> lines_;
+};
 
 }  // namespace gonio::calibration

@@ -31,19 +31,37 @@ BackgroundHistory history_of(const ScanReadings& scan, Target target, const Read
   return history;
 }
 
+// What belongs to no point: thousands among the millions of readings, which are walked through once.
+ScanReadings visits_of(const ScanReadings& scan) {
+  ScanReadings visits{.isotropic = scan.isotropic,
+                      .reference_mode = scan.reference_mode,
+                      .points = {},
+                      .drift_limit = scan.drift_limit,
+                      .readings = {}};
+  for (const RawReading& reading : scan.readings) {
+    const bool is_of_target = reading.target == Target::Sample || reading.target == Target::Reference;
+    if (!is_of_target || reading.visited_point) visits.readings.push_back(reading);
+  }
+  return visits;
+}
+
 }  // namespace
 
 ScanHistories::ScanHistories(const ScanReadings& scan, const InstrumentModel& instrument,
                              const CalibrationOptions& options)
-    : darks_(scan, instrument.detector),
+    : ScanHistories(instrument, options, visits_of(scan)) {}
+
+ScanHistories::ScanHistories(const InstrumentModel& instrument, const CalibrationOptions& options,
+                             const ScanReadings& visits)
+    : darks_(visits, instrument.detector),
       context_{.darks = &darks_, .detector = &instrument.detector, .left_out = options.left_out},
-      mode_(scan.reference_mode) {
-  ambient_ = history_of(scan, Target::Ambient, context_);
+      mode_(visits.reference_mode) {
+  ambient_ = history_of(visits, Target::Ambient, context_);
   if (!ambient_.is_empty()) context_.ambient = &ambient_;
-  stray_ = history_of(scan, Target::Trap, context_);
+  stray_ = history_of(visits, Target::Trap, context_);
   if (!stray_.is_empty()) context_.stray = &stray_;
-  if (mode_ == ReferenceMode::Anchor) anchor_.emplace(scan, context_, instrument);
-  if (options.correct_drift && mode_ == ReferenceMode::SameGeometry) drift_.emplace(scan, context_, instrument);
+  if (mode_ == ReferenceMode::Anchor) anchor_.emplace(visits, context_, instrument);
+  if (options.correct_drift && mode_ == ReferenceMode::SameGeometry) drift_.emplace(visits, context_, instrument);
 }
 
 }  // namespace gonio::calibration

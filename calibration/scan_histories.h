@@ -32,6 +32,8 @@ class ScanHistories {
   [[nodiscard]] bool has_trap_visits() const { return !stray_.is_empty(); }
 
  private:
+  ScanHistories(const InstrumentModel& instrument, const CalibrationOptions& options, const ScanReadings& visits);
+
   DarkHistory darks_;
   BackgroundHistory ambient_;
   BackgroundHistory stray_;

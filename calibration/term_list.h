@@ -25,6 +25,7 @@ class TermList {
   explicit TermList(ComponentTable& table) : table_(table) {}
 
   void clear() {
+    table_.begin_point();
     random_.clear();
     shared_.clear();
     divisor_.clear();
@@ -65,8 +66,8 @@ class TermList {
   [[nodiscard]] const std::vector<BudgetTerm>& random_terms() const { return random_; }
   [[nodiscard]] const std::vector<Component>& components() const { return table_.components(); }
 
-  /// Sorts and merges the terms (make_budget).
-  [[nodiscard]] Budget budget() { return make_budget_in_place(table_.components(), random_, shared_); }
+  /// Sorts and merges the terms (make_budget). It refers to them: until the next change of this list.
+  [[nodiscard]] Budget budget() { return make_budget(table_.components(), random_, shared_); }
 
  private:
   template <class Name>

@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
                         .value = point.value,
                         .u_random = point.budget.u_random});
     }
-    slopes.push_back(seconds_of([&] { (void)direction_slopes(places, true, 0); }));
+    slopes.push_back(seconds_of([&] { const SlopeField field(places, true, 0); }));
     scan = {};
     if (round == 0) {
       single.push_back(seconds_of([&] { (void)calibrate(grid.scan(), model, standard, kMeasuredOn, {.threads = 1}); }));

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace gonio::calibration {
 namespace {
@@ -10,6 +12,15 @@ namespace {
 Brdf f(double value) {
   return per_steradian(value);
 }
+
+/// A budget with the lists that it refers to.
+struct Made {
+  std::vector<BudgetTerm> random;
+  std::vector<BudgetTerm> shared;
+  Budget budget;
+  Made(const std::vector<Component>& components, std::vector<BudgetTerm> of_random, std::vector<BudgetTerm> of_shared)
+      : random(std::move(of_random)), shared(std::move(of_shared)), budget(make_budget(components, random, shared)) {}
+};
 
 // JCGM 100:2008, table G.2, column 95.45 %.
 TEST(CoverageFactor, IsThatOfTheGuidesTable) {
@@ -24,7 +35,8 @@ TEST(CoverageFactor, IsThatOfTheGuidesTable) {
 TEST(Budget, AddsRandomAndSharedPartsAsSquares) {
   const std::vector<Component> components(3);
 
-  const Budget budget = make_budget(components, {{0, f(3.0)}}, {{1, f(-4.0)}, {2, f(12.0)}});
+  const Made made(components, {{0, f(3.0)}}, {{1, f(-4.0)}, {2, f(12.0)}});
+  const Budget& budget = made.budget;
 
   EXPECT_DOUBLE_EQ(budget.u_random.si(), 3.0);
   EXPECT_DOUBLE_EQ(budget.u_shared.si(), std::sqrt(160.0));
@@ -36,7 +48,8 @@ TEST(Budget, AddsRandomAndSharedPartsAsSquares) {
 TEST(Budget, LetsTwoSensitivitiesToTheSameErrorCancel) {
   const std::vector<Component> components(2);
 
-  const Budget budget = make_budget(components, {}, {{1, f(5.0)}, {0, f(1.0)}, {1, f(-5.0)}});
+  const Made made(components, {}, {{1, f(5.0)}, {0, f(1.0)}, {1, f(-5.0)}});
+  const Budget& budget = made.budget;
 
   ASSERT_EQ(budget.shared.size(), 1U);
   EXPECT_EQ(budget.shared[0].component, 0U);
@@ -48,7 +61,8 @@ TEST(Budget, TakesKFromTheEffectiveDegreesOfFreedom) {
   std::vector<Component> components(2);
   components[1].degrees_of_freedom = 8.0;
 
-  const Budget budget = make_budget(components, {{1, f(4.0)}}, {{0, f(3.0)}});
+  const Made made(components, {{1, f(4.0)}}, {{0, f(3.0)}});
+  const Budget& budget = made.budget;
 
   EXPECT_NEAR(budget.degrees_of_freedom, 625.0 / 32.0, 1e-12);
   EXPECT_NEAR(budget.k, 2.13, 0.01);
@@ -57,8 +71,10 @@ TEST(Budget, TakesKFromTheEffectiveDegreesOfFreedom) {
 
 TEST(WeightedSum, KeepsSharedErrorsTogetherAndRandomOnesApart) {
   const std::vector<Component> components(3);
-  const Budget a = make_budget(components, {{0, f(3.0)}}, {{1, f(2.0)}, {2, f(1.0)}});
-  const Budget b = make_budget(components, {{0, f(4.0)}}, {{1, f(2.0)}, {2, f(-1.0)}});
+  const Made made_a(components, {{0, f(3.0)}}, {{1, f(2.0)}, {2, f(1.0)}});
+  const Budget& a = made_a.budget;
+  const Made made_b(components, {{0, f(4.0)}}, {{1, f(2.0)}, {2, f(-1.0)}});
+  const Budget& b = made_b.budget;
   const std::vector<SumTerm> terms = {{1.0, f(10.0), &a}, {1.0, f(20.0), &b}};
 
   const Measured<Brdf> sum = weighted_sum(terms);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 #include "tests/calibration/scan_builder.h"
 
@@ -41,11 +42,18 @@ std::vector<Geometry> grid(const std::vector<double>& theta_i, const std::vector
   return places;
 }
 
+std::vector<DirectionSlopes> slopes_of(const std::vector<SlopePoint>& points) {
+  const SlopeField field(points, true);
+  std::vector<DirectionSlopes> slopes;
+  for (std::size_t n = 0; n < points.size(); ++n) slopes.push_back(field.at(n));
+  return slopes;
+}
+
 TEST(DirectionSlopes, AreExactForAnExponentialOfAQuarticAlongALine) {
   const auto f = [](double, double r, double) { return 0.2 * std::exp(0.3 * r - 0.7 * r * r + 0.5 * std::pow(r, 4)); };
   const auto points = measured(grid({30}, {20, 30, 40, 50, 60}, {90}), f);
 
-  const auto slopes = direction_slopes(points, true);
+  const auto slopes = slopes_of(points);
 
   for (std::size_t n = 0; n < points.size(); ++n) {
     const double r = points[n].reported.theta_r.si();
@@ -65,7 +73,7 @@ TEST(DirectionSlopes, SayHowMuchTheirPointsDoNotResolve) {
   };
   const auto points = measured(grid({10, 25, 40, 55}, {5, 20, 35, 50, 65}, {0, 30, 60, 90, 120, 150, 180}), f);
 
-  const auto slopes = direction_slopes(points, true);
+  const auto slopes = slopes_of(points);
 
   constexpr double kStep = 1e-5;
   constexpr double kNoMatter = 0.2;  // per radian: through a zero error of 0.02 deg, 7e-5 of the value
@@ -95,7 +103,7 @@ TEST(DirectionSlopes, GoThroughTheNormalIntoTheOppositeHalfPlane) {
   const auto f = [](double, double r, double p) { return std::exp(0.4 * r * std::cos(p)); };  // along x
   const auto points = measured(grid({30}, {0, 20, 40}, {0, 180}), f);
 
-  const auto slopes = direction_slopes(points, true);
+  const auto slopes = slopes_of(points);
 
   EXPECT_NEAR(slopes[0].slope[kR], 0.4, 1e-12);  // at the normal, towards phi = 0
   EXPECT_NEAR(slopes[0].unresolved[kR], 0.0, 1e-12);
@@ -105,7 +113,7 @@ TEST(DirectionSlopes, VanishByMirrorSymmetryInThePlaneOfIncidence) {
   const auto f = [](double, double, double p) { return 1.0 + 0.3 * std::cos(p); };
   const auto points = measured(grid({30}, {40}, {0, 60, 120, 180}), f);
 
-  const auto slopes = direction_slopes(points, true);
+  const auto slopes = slopes_of(points);
 
   for (const std::size_t n : {0U, 3U}) {
     EXPECT_EQ(slopes[n].slope[kPhi], 0.0);
@@ -116,8 +124,8 @@ TEST(DirectionSlopes, VanishByMirrorSymmetryInThePlaneOfIncidence) {
 
 TEST(DirectionSlopes, OfNegativeAzimuthsAreThoseOfTheMirrorImageTurnedRound) {
   const auto f = [](double i, double r, double p) { return std::exp(0.3 * i + 0.5 * r) * (1.0 + 0.3 * std::cos(p)); };
-  const auto right = direction_slopes(measured(grid({10, 30}, {20, 40}, {30, 60, 100}), f), true);
-  const auto left = direction_slopes(measured(grid({10, 30}, {20, 40}, {-30, -60, -100}), f), true);
+  const auto right = slopes_of(measured(grid({10, 30}, {20, 40}, {30, 60, 100}), f));
+  const auto left = slopes_of(measured(grid({10, 30}, {20, 40}, {-30, -60, -100}), f));
 
   for (std::size_t n = 0; n < right.size(); ++n) {
     EXPECT_NEAR(left[n].slope[kI], right[n].slope[kI], 1e-12);
@@ -130,15 +138,15 @@ TEST(DirectionSlopes, AreTakenFromTheValuesThemselvesWhereTheyAreNotClearOfZero)
   const auto f = [](double, double r, double) { return 1e-3 * (r - 0.6); };
   const auto points = measured(grid({30}, {20, 30, 40, 50}, {90}), f, 1e-6);
 
-  const auto slopes = direction_slopes(points, true);
+  const auto slopes = slopes_of(points);
 
   for (const DirectionSlopes& s : slopes) EXPECT_NEAR(s.slope[kR], 1e-3, 1e-12);
 }
 
 TEST(DirectionSlopes, AreGuessedAndSaidToBeGuessedWithoutNeighbours) {
   const auto f = [](double, double r, double) { return std::exp(2.0 * r); };
-  const auto line = direction_slopes(measured(grid({30}, {20, 30, 40}, {90}), f), true);
-  const auto alone = direction_slopes(measured(grid({30}, {40}, {90}), f), true);
+  const auto line = slopes_of(measured(grid({30}, {20, 30, 40}, {90}), f));
+  const auto alone = slopes_of(measured(grid({30}, {40}, {90}), f));
 
   const double slope = std::hypot(line[1].slope[kR], line[1].unresolved[kR]);
   EXPECT_FALSE(line[1].has_neighbours[kI]);
@@ -151,7 +159,7 @@ TEST(DirectionSlopes, AreGuessedAndSaidToBeGuessedWithoutNeighbours) {
 TEST(DirectionSlopes, AreNotTakenForZeroBecauseAPointMirrorsItself) {
   const auto f = [](double, double r, double) { return std::exp(r); };
 
-  const auto slopes = direction_slopes(measured(grid({0}, {20}, {0}), f), true);
+  const auto slopes = slopes_of(measured(grid({0}, {20}, {0}), f));
 
   EXPECT_FALSE(slopes[0].has_neighbours[kR]);
   EXPECT_GT(slopes[0].unresolved[kR], 0.0);
@@ -162,7 +170,7 @@ TEST(DirectionSlopes, NeverMixWavelengths) {
   auto points = measured(grid({30}, {20, 40}, {90}), f);
   points[1].wavelength = nanometres(632.8);
 
-  const auto slopes = direction_slopes(points, true);
+  const auto slopes = slopes_of(points);
 
   EXPECT_FALSE(slopes[0].has_neighbours[kR]);
 }

@@ -1,0 +1,41 @@
+#include "base/large_array.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace gonio {
+namespace {
+
+TEST(LargeArray, BeginsOnAPageOfItsOwnWhereItIsLarge) {
+  const LargeArray<double> numbers((std::size_t{4} << 20U) / sizeof(double));
+
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(numbers.data()) % (std::size_t{2} << 20U), 0U);
+}
+
+TEST(LargeArray, KeepsItsElementsThroughGrowthAndCopies) {
+  LargeArray<int> grown;
+  for (int n = 0; n < 1'000'000; ++n) grown.push_back(n);
+  const LargeArray<int> copy = grown;
+  grown.resize(1);
+
+  for (int n = 0; n < 1'000'000; ++n) ASSERT_EQ(copy[static_cast<std::size_t>(n)], n);
+  EXPECT_EQ(grown, LargeArray<int>{0});
+}
+
+TEST(LargeArray, TakesElementsThatHaveInitialisersOfTheirOwn) {
+  struct Point {
+    double value = 3.0;
+    int index = 7;
+  };
+  LargeArray<Point> points;
+  points.push_back({.value = 1.0, .index = 2});
+  points.resize(2);
+  points[1] = {};
+
+  EXPECT_EQ(points[0].index, 2);
+  EXPECT_EQ(points[1].value, 3.0);
+}
+
+}  // namespace
+}  // namespace gonio
