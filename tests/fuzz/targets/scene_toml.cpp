@@ -1,12 +1,13 @@
 // Scenes of the simulator: the daemon takes the instrument and the reference that a scene describes.
 #include <cmath>
+#include <fstream>
 
 #include "sim/scene/papers.h"
 #include "sim/scene/read_scene.h"
 #include "sim/scene/truth.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
-#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace gonio::fuzz {
 
@@ -14,7 +15,7 @@ void scene_toml(Bytes input) {
   static const test::TemporaryFolder folder(test::folder_in_memory());
   const std::string path = folder / "scene.toml";
   const std::string_view text = text_of(input);
-  test::write_text(path, std::string(text));
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
   const auto scene = sim::read_scene(path);
   if (!scene) {
     hold_error(scene.error());
