@@ -14,6 +14,7 @@
 #include "reflectance/formats/rgl_file.h"
 #include "reflectance/formats/ssdd_file.h"
 #include "reflectance/formats/text_lines.h"
+#include "reflectance/formats/utf8_text.h"
 #include "reflectance/formats/zemax_file.h"
 
 namespace gonio::formats {
@@ -83,6 +84,34 @@ Error unknown_format(std::string file, std::string seen) {
           .where = InputLocation{std::move(file), 1, ""}};
 }
 
+Result<MeasuredBrdf> read_as(Format format, std::string_view bytes, const std::string& file,
+                             std::optional<std::string_view> sidecar) {
+  switch (format) {
+    case Format::Csv:
+      return read_csv(bytes, sidecar, file);
+    case Format::Bird:
+      return read_bird(bytes, file);
+    case Format::Astm:
+      return read_astm(bytes, file);
+    case Format::Zemax:
+      return read_zemax(bytes, file);
+    case Format::Merl:
+      return read_merl(bytes, file);
+    case Format::Ssdd:
+      return read_ssdd(bytes, file);
+    case Format::Alta:
+      return read_alta(bytes, file);
+    case Format::Rgl:
+      return read_rgl(bytes, file);
+    case Format::Nexus:
+      return read_nexus(bytes, file);
+    case Format::Pab:
+    case Format::Klems:
+      break;
+  }
+  return failure(unknown_format(file, fmt::format("{}, which is written only", format_name(format))));
+}
+
 }  // namespace
 
 std::string_view format_name(Format format) {
@@ -118,31 +147,9 @@ Result<MeasuredBrdf> read_brdf(std::string_view bytes, const std::string& file,
   if (!format && is_utf16(bytes)) return failure(unknown_format(file, "UTF-16 text; save it as UTF-8"));
   if (!format)
     return failure(unknown_format(file, bytes.empty() ? "an empty file" : "none of the formats that are known"));
-  bytes = without_byte_order_mark(bytes);
-  switch (*format) {
-    case Format::Csv:
-      return read_csv(bytes, sidecar, file);
-    case Format::Bird:
-      return read_bird(bytes, file);
-    case Format::Astm:
-      return read_astm(bytes, file);
-    case Format::Zemax:
-      return read_zemax(bytes, file);
-    case Format::Merl:
-      return read_merl(bytes, file);
-    case Format::Ssdd:
-      return read_ssdd(bytes, file);
-    case Format::Alta:
-      return read_alta(bytes, file);
-    case Format::Rgl:
-      return read_rgl(bytes, file);
-    case Format::Nexus:
-      return read_nexus(bytes, file);
-    case Format::Pab:
-    case Format::Klems:
-      break;
-  }
-  return failure(unknown_format(file, fmt::format("{}, which is written only", format_name(*format))));
+  Result<MeasuredBrdf> brdf = read_as(*format, without_byte_order_mark(bytes), file, sidecar);
+  if (brdf) make_texts_utf8(*brdf);
+  return brdf;
 }
 
 }  // namespace gonio::formats

@@ -22,7 +22,8 @@ enum class Format : std::uint8_t { Csv, Bird, Astm, Zemax, Merl, Ssdd, Pab, Alta
 /// By what stands in the file, never by its name: two formats call themselves ".bsdf". Absent where it is none of them.
 [[nodiscard]] std::optional<Format> detect_format(std::string_view bytes);
 
-/// Reads whatever `detect_format` finds, with or without UTF-8's byte order mark; `sidecar` goes with a CSV. Errors:
+/// Reads whatever `detect_format` finds, with or without UTF-8's byte order mark; `sidecar` goes with a CSV. Names and
+/// texts that are not UTF-8 are taken for ISO 8859-1. Errors:
 /// InvalidInput (none of the formats, with what they are; UTF-16; one that is only written), else as the reader of the
 /// format.
 [[nodiscard]] Result<MeasuredBrdf> read_brdf(std::string_view bytes, const std::string& file,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "reflectance/formats/json_object.h"
+#include "reflectance/formats/metadata_texts.h"
 
 namespace gonio::formats {
 namespace {
@@ -16,28 +17,6 @@ using reflectance::TableSymmetry;
 
 constexpr std::string_view kSidecarFormat = "gonio-brdf";
 constexpr std::size_t kSidecarVersion = 1;
-
-struct TextField {
-  std::string_view key;
-  std::string BrdfMetadata::*field;
-};
-constexpr std::array kTextFields{TextField{"id", &BrdfMetadata::id},
-                                 TextField{"description", &BrdfMetadata::description},
-                                 TextField{"measured_at", &BrdfMetadata::measured_at},
-                                 TextField{"software", &BrdfMetadata::software},
-                                 TextField{"sample", &BrdfMetadata::sample},
-                                 TextField{"sample_kind", &BrdfMetadata::sample_kind},
-                                 TextField{"zero_azimuth", &BrdfMetadata::zero_azimuth},
-                                 TextField{"medium", &BrdfMetadata::medium},
-                                 TextField{"instrument", &BrdfMetadata::instrument},
-                                 TextField{"organisation", &BrdfMetadata::organisation},
-                                 TextField{"operator", &BrdfMetadata::operator_name},
-                                 TextField{"email", &BrdfMetadata::email},
-                                 TextField{"country", &BrdfMetadata::country},
-                                 TextField{"city", &BrdfMetadata::city},
-                                 TextField{"street", &BrdfMetadata::street},
-                                 TextField{"building", &BrdfMetadata::building},
-                                 TextField{"postal_code", &BrdfMetadata::postal_code}};
 
 struct NumberField {
   std::string_view key;
@@ -55,7 +34,7 @@ const std::vector<std::string_view> kSidecarPolarisations{"", "unpolarised", "s"
 ordered_json metadata_json(const BrdfMetadata& metadata) {
   ordered_json said = ordered_json::object();
   said["method"] = kSidecarMethods[static_cast<std::size_t>(metadata.method)];
-  for (const TextField& text : kTextFields)
+  for (const MetadataText& text : kMetadataTexts)
     if (!(metadata.*text.field).empty()) said[std::string(text.key)] = metadata.*text.field;
   if (metadata.symmetry) said["symmetry"] = kSidecarSymmetries[1 + static_cast<std::size_t>(*metadata.symmetry)];
   for (const NumberField& number : kNumberFields)
@@ -81,7 +60,7 @@ ordered_json channel_json(const Channel& channel) {
 BrdfMetadata metadata_from(const JsonObject& said) {
   BrdfMetadata metadata;
   metadata.method = static_cast<Method>(said.choice("method", kSidecarMethods));
-  for (const TextField& text : kTextFields) metadata.*text.field = said.text(text.key);
+  for (const MetadataText& text : kMetadataTexts) metadata.*text.field = said.text(text.key);
   const std::size_t symmetry = said.choice("symmetry", kSidecarSymmetries);
   if (symmetry > 0) metadata.symmetry = static_cast<TableSymmetry>(symmetry - 1);
   for (const NumberField& number : kNumberFields) metadata.*number.field = said.number(number.key);

@@ -51,7 +51,11 @@ class SsddReader {
   Result<MeasuredBrdf> read() {
     GONIO_TRY(read_header());
     GONIO_TRY(take_header());
-    GONIO_TRY(entries_.at("DATA") == "binary" ? read_binary() : read_text());
+    const bool is_binary = entries_.at("DATA") == "binary";
+    GONIO_TRY(is_binary ? read_binary() : read_text());
+    const bool has_more =
+        is_binary ? !trimmed(lines_.rest().substr(binary_bytes())).empty() : lines_.next_filled().has_value();
+    if (has_more) brdf_.metadata.remarks.emplace_back("left out", "what follows the BRDF: other blocks are not read");
     GONIO_TRY(check(brdf_, lines_.file()));
     return std::move(brdf_);
   }
@@ -163,6 +167,12 @@ class SsddReader {
       add_points(params, *values);
       return {};
     });
+  }
+
+  std::size_t binary_bytes() const {
+    std::size_t count = brdf_.channels.size() * sizeof(float);
+    for (const std::vector<double>& axis : axes_) count *= axis.size();
+    return count;
   }
 
   Result<void> read_binary() {

@@ -25,8 +25,9 @@ struct ZemaxAxes {
 /// lost. Errors: InvalidInput (no channel, an axis that is empty, out of range or not rising).
 [[nodiscard]] Result<Export> write_zemax(const SurfaceFile& file, const ZemaxAxes& axes = {});
 
-/// One channel, or X, Y, Z. Directions below the horizon are left out; the values at radial 0, one for each azimuth,
-/// are one point. A sample rotation is -phi_i. Errors: InvalidInput with the line: a key that is absent or out of
+/// One channel, or X, Y, Z. Directions below the horizon are left out, and zeros that fill a row up to its end (with a
+/// remark: laboratories write them beyond their instrument's reach); the values at radial 0, one for each azimuth, are
+/// one point. A sample rotation is -phi_i. Errors: InvalidInput with the line: a key that is absent or out of
 /// order, a list of another length than it says, too few values, BTDF.
 [[nodiscard]] Result<MeasuredBrdf> read_zemax(std::string_view text, const std::string& file);
 

@@ -48,6 +48,8 @@ class ZemaxReader {
     } else {
       GONIO_TRY(read_channel("", "Monochrome"));
     }
+    if (padded_ > 0)
+      brdf_.metadata.remarks.emplace_back("left out", fmt::format("{} zeros that fill rows up to their ends", padded_));
     if (is_mirrored_) brdf_.metadata.symmetry = reflectance::TableSymmetry::Isotropic;
     if (!is_mirrored_ && rotations_.size() == 1) brdf_.metadata.symmetry = reflectance::TableSymmetry::Turn;
     GONIO_TRY(check(brdf_, lines_.file()));
@@ -126,15 +128,24 @@ class ZemaxReader {
       if (!values) return failure(values.error());
       if (brdf_.points.size() + values->size() > kMostPoints)
         return failure(lines_.error("", "too many values", fmt::format("{} points", kMostPoints)));
+      const std::size_t filled = filled_part(*values);
       for (std::size_t n = 0; n < radials_.size(); ++n) {
         if (radials_[n] == 0.0 && row > 0) continue;
-        add_point(rotation, incidence, azimuths_[row], radials_[n], (*values)[n], channel);
+        if (n < filled) add_point(rotation, incidence, azimuths_[row], radials_[n], (*values)[n], channel);
       }
+      padded_ += values->size() - filled;
     }
     return {};
   }
 
-  // Directions below the horizon stand in the table, too, with 0 for a value.
+  // Up to the last value that is not 0: rows are filled up with it, where the horizon or the instrument's reach ends
+  // them. A row of nothing else is a row of values.
+  static std::size_t filled_part(const std::vector<double>& row) {
+    const auto last = std::find_if(row.rbegin(), row.rend(), [](double f) { return f != 0.0; });
+    return last == row.rend() ? row.size() : static_cast<std::size_t>(row.rend() - last);
+  }
+
+  // Directions below the horizon stand in the table, too.
   void add_point(double rotation, double incidence, double azimuth, double radial, double f, std::uint32_t channel) {
     const Result<DirectionPair> d = reflectance::from_specular_centred({.theta_i = degrees(incidence),
                                                                         .phi_i = degrees(-rotation),
@@ -159,6 +170,7 @@ class ZemaxReader {
   std::vector<double> incidences_;
   std::vector<double> azimuths_;
   std::vector<double> radials_;
+  std::size_t padded_ = 0;
   MeasuredBrdf brdf_;
 };
 

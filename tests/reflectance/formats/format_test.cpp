@@ -12,6 +12,7 @@
 #include "reflectance/formats/pab_file.h"
 #include "reflectance/formats/rgl_file.h"
 #include "reflectance/formats/ssdd_file.h"
+#include "reflectance/formats/utf8_text.h"
 #include "reflectance/formats/zemax_file.h"
 #include "tests/reflectance/formats/sample_files.h"
 #include "tests/reflectance/surfaces.h"
@@ -73,6 +74,18 @@ TEST(Format, OfATextIsKnownBehindAByteOrderMarkAndComments) {
   }
   const Result<MeasuredBrdf> wide = read_brdf("\xFF\xFEt", "theirs.csv");
   EXPECT_THAT(describe(wide.error()), HasSubstr("UTF-16"));
+}
+
+TEST(Format, OfOlderTextsHasItsLatinCharacters) {
+  const std::string alta =
+      "#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n#PARAM_OUT INV_STERADIAN\n#SAMPLE \"10 \xB5m\"\n.5 0 0 5\n";
+  EXPECT_EQ(read_brdf(alta, "x.alta")->metadata.sample, "10 \xC2\xB5m");
+  for (const std::string utf8 : {"", "10 \xC2\xB5m", "\xE2\x82\xAC", "\xF0\x9F\x98\x80"})
+    EXPECT_EQ(as_utf8(utf8), utf8);
+  for (const std::string other : {"\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82", "\xFF"}) {
+    EXPECT_FALSE(is_utf8(other)) << "overlong, a surrogate, beyond the last, cut short, none";
+    EXPECT_TRUE(is_utf8(as_utf8(other)));
+  }
 }
 
 TEST(Format, ThatIsNoneHasItsWord) {

@@ -117,7 +117,20 @@ TEST(SsddFile, MayHoldItsValuesInBinary) {
   ASSERT_TRUE(read) << describe(read.error());
   EXPECT_EQ(read->points[0].f_per_sr, 1.0);
   EXPECT_EQ(read->points[1].f_per_sr, -2.0);
+  EXPECT_TRUE(read->metadata.remarks.empty());
   EXPECT_FALSE(read_ssdd(bytes.substr(0, bytes.size() - 1), "cut.ssdd"));
+  const Result<MeasuredBrdf> followed = read_ssdd(bytes + "\nVERSION 0.2\nDATA_TYPE specular_reflectance\n", "x.ssdd");
+  ASSERT_TRUE(followed) << describe(followed.error());
+  EXPECT_EQ(followed->points, read->points);
+  EXPECT_EQ(followed->metadata.remarks.at(0).first, "left out");
+}
+
+TEST(SsddFile, SaysThatBlocksAfterItsTextAreNotRead) {
+  const std::string text =
+      "VERSION 0.2\nDATA_TYPE brdf\nCOLOR_MODEL monochrome\nPARAM_TYPE spherical_coordinate_system\n"
+      "PARAM0_LIST 0 30\nPARAM2_LIST 0\nPARAM3_LIST 0\nDATA ascii\n1\n2\n\n";
+  EXPECT_TRUE(read_ssdd(text, "x.ssdd")->metadata.remarks.empty());
+  EXPECT_EQ(read_ssdd(text + "DATA_TYPE specular_reflectance\n", "x.ssdd")->metadata.remarks.size(), 1u);
 }
 
 TEST(SsddFile, SaysWhereABadOneIsBad) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -155,10 +156,27 @@ TEST(ZemaxFile, OfOthersIsRead) {
   EXPECT_EQ(read->points[1].f_per_sr, 3.355e-02);
   EXPECT_NEAR(read->points[1].theta_r_deg, 5.0, 1e-12);
   EXPECT_NEAR(read->points[1].phi_r_deg, 180.0, 1e-9);
+  EXPECT_EQ(std::ranges::count(read->points, 0.0, &BrdfPoint::f_per_sr), 0) << "it fills rows up with zeros";
   const Result<SurfaceFile> surfaces = surfaces_of(*read);
   ASSERT_TRUE(surfaces) << describe(surfaces.error());
   const Result<Export> again = write_zemax(*surfaces);
   ASSERT_TRUE(again) << describe(again.error());
+}
+
+TEST(ZemaxFile, TakesZerosAtTheEndOfARowForNoReading) {
+  const std::string text =
+      "Source\tMeasured\nSymmetry\tPlaneSymmetrical\nSpectralContent\tMonochrome\nScatterType\tBRDF\n"
+      "SampleRotation\t1\n0\nAngleOfIncidence\t1\n0\nScatterAzimuth\t3\n0\t90\t180\nScatterRadial\t4\n0\t20\t40\t60\n"
+      "Monochrome\nDataBegin\nTIS\t0.3\n.1\t0\t.3\t0\n.1\t.2\t0\t0\n0\t0\t0\t0\nDataEnd\n";
+
+  const Result<MeasuredBrdf> read = read_zemax(text, "x.bsdf");
+
+  ASSERT_TRUE(read) << describe(read.error());
+  std::vector<double> values;
+  for (const BrdfPoint& p : read->points) values.push_back(p.f_per_sr);
+  EXPECT_THAT(values, testing::ElementsAre(0.1, 0.0, 0.3, 0.2, 0.0, 0.0, 0.0))
+      << "between values 0 is one, as in a row of it";
+  EXPECT_THAT(read->metadata.remarks.back().second, HasSubstr("3 zeros"));
 }
 
 TEST(ZemaxFile, SaysWhereABadOneIsBad) {
