@@ -1,6 +1,7 @@
 """Writes the seeds of the binary formats, byte by byte from their specifications, and of the texts from the files that
 ship with the project, into a folder each: seeds.py FOLDER. They are where the fuzzers begin; what those found worth
 keeping lies in corpus/."""
+import json
 import pathlib
 import struct
 import sys
@@ -156,3 +157,46 @@ keep("pixels", "packed", bytes([1, 0, 8]) + zlib.compress(bytes(range(16))))
 # tape: odd is payloads in counted pieces (2), even a file as it is.
 keep("tape", "turn", bytes([1]) + struct.pack(">H", 19) + bytes([2, 1, 0]) + bytes(16))
 keep("tape", "file", bytes([0]) + b"GONIOTAP\r\n\x1a\1" + struct.pack("<II", 2, zlib.crc32(b"\6\0")) + b"\6\0")
+
+# brdf_file: a small file of each format, by its description; MERL's begins with its three lengths.
+GRID = [(30, theta, phi, 0.1 + 0.01 * theta - 0.001 * phi) for theta in (0, 20, 40) for phi in (0, 90, 180)]
+keep("brdf_file", "csv", "# by hand\ntheta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_per_sr,U_per_sr,k,wavelength_nm,flags\n"
+     + "".join(f"{i},0,{r},{p},{f:.3f},0.01,2,550,{'weak|odd' if r == 20 else ''}\n" for i, r, p, f in GRID))
+keep("brdf_file", "astm", "ASTM E1392-96(2002)\nNUM_POINTS 9\nVARS theta_i,phi_i,theta_s,phi_s,550nm\n"
+     + "".join(f"{i / 57.3:.5f},0,{r / 57.3:.5f},{p / 57.3:.5f},{f:.3f}\n" for i, r, p, f in GRID))
+for name in ("ISOTROPIC_TV_TL_DPHI", "RUSIN_TH_TD_PD"):
+    keep("brdf_file", "alta_" + name.lower(), f"#SAMPLE \"x\"\n#DIM 3 1\n#VS 1\n#PARAM_IN {name}\n#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n"
+         + "".join(f"{i / 57.3:.5f} {r / 57.3:.5f} {p / 57.3:.5f} {f:.3f} 0.01\n" for i, r, p, f in GRID))
+keep("brdf_file", "alta_plane", "#DIM 3 1\n#VS 0\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n#PARAM_OUT INV_STERADIAN\n"
+     + "".join(f"0.5 {x / 10} 0 {1 + x}\n" for x in range(-12, 13, 3)))
+keep("brdf_file", "alta_colour", "#DIM 6 3\n#VS 2 0 0\n#PARAM_IN CARTESIAN\n#PARAM_OUT RGB_COLOR\n0 0 1 0 0 1 1 2 3 0.9 1.1\n0 1 0 0 0 1 1 2 3 0.9 1.1\n")
+keep("brdf_file", "zemax", "# Sample: x\nSource\tMeasured\nSymmetry\tPlaneSymmetrical\nSpectralContent\tMonochrome\nScatterType\tBRDF\n"
+     "SampleRotation\t1\n0\nAngleOfIncidence\t2\n0\t30\nScatterAzimuth\t3\n0\t90\t180\nScatterRadial\t3\n0\t20\t60\nMonochrome\nDataBegin\n"
+     + "TIS\t0.3\n.1\t.2\t.3\n.1\t.2\t.3\n.1\t.2\t.3\n" * 2 + "DataEnd\n")
+ssdd = "VERSION 0.2\nDATA_TYPE brdf\nCOLOR_MODEL {}\nPARAM_TYPE {}_coordinate_system\nREDUCTION_TYPE bilateral_symmetry\nPARAM0_LIST 0 30\n" \
+       "PARAM2_LIST 0 40\nPARAM3_LIST 0 90\nDATA {}\n"
+for kind in ("spherical", "specular", "half_difference"):
+    keep("brdf_file", "ssdd_" + kind, ssdd.format("monochrome", kind, "ascii") + "".join(f"{k}\n" for k in range(8)))
+keep("brdf_file", "ssdd_binary", ssdd.format("rgb", "spherical", "binary").encode() + struct.pack("<24f", *range(24)))
+keep("brdf_file", "merl", struct.pack("<3i4d", 90, 90, 180, 1, 2, 3, 4))
+
+
+def tensor(fields):
+    places, data = 18 + sum(2 + len(name) + 11 + 8 * len(shape) for name, _, shape, _ in fields), b""
+    head = b"tensor_file\0\1\0" + struct.pack("<I", len(fields))
+    for name, kind, shape, values in fields:
+        data += bytes(-(places + len(data)) % 8)
+        head += struct.pack("<H", len(name)) + name.encode() + struct.pack(f"<HBQ{len(shape)}Q", len(shape), kind, places + len(data), *shape)
+        data += bytes(values) if kind == 1 else struct.pack(f"<{len(values)}f", *values)
+    return head + data
+
+
+keep("brdf_file", "rgl", tensor([("description", 1, [4], b"blue"), ("phi_i", 10, [1], [0]), ("theta_i", 10, [2], [0, 0.5]),
+                                 ("ndf", 10, [2, 2], [4] * 4), ("sigma", 10, [2, 2], [1] * 4), ("vndf", 10, [1, 2, 2, 2], [1, 2] * 4),
+                                 ("wavelengths", 10, [1], [550]), ("spectra", 10, [1, 2, 1, 3, 3], [0.1] * 18)]))
+
+columns = {"theta_i": [g[0] for g in GRID], "phi_i": [0] * len(GRID), "theta_r": [g[1] for g in GRID], "phi_r": [g[2] for g in GRID]}
+bird = {name: {"unit": "deg", "values": values} for name, values in columns.items()}
+bird["wavelength_i"] = {"unit": "nm", "values": [550] * len(GRID)}
+bird["BRDF"] = {"unit": "sr^-1", "values": [round(g[3], 3) for g in GRID]}
+keep("brdf_file", "bird", json.dumps({"metadata": {"sample": {"name": "x"}}, "data": bird}))

@@ -27,6 +27,7 @@ void api_text(Bytes input);
 void modbus_request(Bytes input);
 void gvcp_request(Bytes input);
 void usbtmc_device(Bytes input);
+void brdf_file(Bytes input);
 
 struct Target {
   std::string_view name;
@@ -52,6 +53,7 @@ inline constexpr std::array kTargets{
     Target{"modbus_request", modbus_request},
     Target{"gvcp_request", gvcp_request},
     Target{"usbtmc_device", usbtmc_device},
+    Target{"brdf_file", brdf_file},
 };
 
 }  // namespace gonio::fuzz
