@@ -1,11 +1,12 @@
 // Error against time of reading a scan between its readings, by number of readings and by scheme; and how long fits
 // take. Usage: bench_interpolation [--output FOLDER] Prints its tables and writes them into FOLDER (the working folder
-// otherwise). Ends with 1 when a claim does not hold: 1e6 directions a second by the chosen scheme, a fit of 1e4
+// otherwise), what a plot is made of as interpolation.tsv. Ends with 1 when a claim does not hold: 1e6 directions a second by the chosen scheme, a fit of 1e4
 // readings and three numbers within 1 s of processor time.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -116,7 +117,7 @@ double seconds_a_direction(const Surface& surface, const std::vector<Direction>&
   return median(times) / static_cast<double>(views.size());
 }
 
-bool measure_sample(const Sample& sample, Table& table) {
+bool measure_sample(const Sample& sample, Table& table, std::ofstream& measurements) {
   const std::vector<Direction> views = spiral(20011, 0.7);
   const Direction i = Direction::from_angles(degrees(kTheta_i), {});
   const double rho = rho_dh(sample.truth, i).value;
@@ -133,6 +134,9 @@ bool measure_sample(const Sample& sample, Table& table) {
       const Error error = error_of(surface, sample.truth, views);
       const double each_s = seconds_a_direction(surface, views);
       const double off = rho_dh(surface, i, 1e-4).value / rho - 1.0;
+      const double alone_s = seconds_of([&] { taken(ScanInterpolant::make(scan, candidate.interpolant.guide())); });
+      measurements << sample.name << '\t' << count << '\t' << candidate.interpolant.guide().name << '\t' << error.rms
+                   << '\t' << candidate.cv_relative << '\t' << alone_s << '\t' << each_s << '\n';
       is_fast = is_fast && each_s < 1e-6;
       table.add({sample.name, std::to_string(count), candidate.interpolant.guide().name + (is_chosen ? ", chosen" : ""),
                  text("%.1e", error.rms), text("%.1e", error.most), text("%.1e", candidate.cv_relative),
@@ -202,9 +206,11 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(folder);
   gonio::bench::Table interpolation({"sample", "readings", "guide", "rms error", "largest", "cross-validation",
                                      "rho_dh off by", "10^6 directions/s", "made in"});
+  std::ofstream measurements = gonio::bench::file_in(folder, "interpolation.tsv");
+  measurements << "sample\treadings\tguide\trms_error\tcross_validation\tmade_s\tdirection_s\n";
   bool is_fast = true;
   for (const auto& sample : gonio::bench::samples()) {
-    is_fast = gonio::bench::measure_sample(sample, interpolation) && is_fast;
+    is_fast = gonio::bench::measure_sample(sample, interpolation, measurements) && is_fast;
   }
   gonio::bench::Table fits({"model", "readings", "free numbers", "shared components", "starts that agree", "time"});
   const bool fits_fast = gonio::bench::measure_fits(fits);
