@@ -2,11 +2,14 @@
 
 #include <poll.h>
 
+#include <charconv>
 #include <filesystem>
 #include <ostream>
 
+#include "base/read_file.h"
 #include "base/write_file.h"
 #include "cli/output.h"
+#include "protocol/api/base64.h"
 
 namespace gonio::cli {
 namespace {
@@ -59,6 +62,30 @@ std::string name_here(const std::string& name, const std::string& stem, const st
 }
 
 }  // namespace
+
+std::optional<std::int64_t> scan_number(const std::string& text) {
+  std::int64_t scan = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
+  if (error != std::errc() || end != text.data() + text.size() || scan <= 0) return std::nullopt;
+  return scan;
+}
+
+Result<api::AnalysisRequest> comparison_request(const std::string& other, bool with_bytes) {
+  api::AnalysisRequest request{.kind = "compare"};
+  std::error_code ignored;
+  if (const auto scan = scan_number(other)) {
+    request.other_scan = *scan;
+  } else if (!std::filesystem::is_regular_file(other, ignored)) {
+    request.other_model = other;
+  } else {
+    request.other_file = other;
+    if (!with_bytes) return request;
+    const Result<std::string> bytes = read_file(other);
+    if (!bytes) return failure(bytes.error());
+    request.other_bytes = api::to_base64(*bytes);
+  }
+  return request;
+}
 
 Result<api::AnalysisReport> run_analysis(DaemonClient& client, const api::AnalysisRequest& request, World& world) {
   auto job = client.post<api::AnalysisReport>(api::RouteId::AnalysisStart, 0, api::to_json(request));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,13 @@
 #include "protocol/api/analysis.h"
 
 namespace gonio::cli {
+
+/// The number when the text is one, above 0.
+[[nodiscard]] std::optional<std::int64_t> scan_number(const std::string& text);
+
+/// What to compare with: a scan by its number, a file that is there, else a model. `with_bytes`: a file's bytes go
+/// along, for the daemon opens no client's path. Errors: FileUnreadable.
+[[nodiscard]] Result<api::AnalysisRequest> comparison_request(const std::string& other, bool with_bytes);
 
 /// Queues a job of the worker program and waits for its end; progress on standard error where that is a terminal's
 /// turn. Ctrl-C cancels the job. Errors: those of the client, the job's own, Stopped.

@@ -24,7 +24,9 @@ std::vector<std::string> analysis_command(const FileJob& job, const std::string&
       "--name",
       output.stem().string(),
       "--job",
-      api::to_json(api::AnalysisRequest{.kind = job.kind, .format = job.format, .model = job.model})};
+      api::to_json(api::AnalysisRequest{
+          .kind = job.kind, .format = job.format, .other_model = job.other_model, .model = job.model})};
+  if (!job.other_file.empty()) command.insert(command.end(), {"--other", job.other_file});
   if (!job.as_json) command.emplace_back("--plain");
   return command;
 }

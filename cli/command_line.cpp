@@ -227,14 +227,31 @@ class CommandLine {
     fit.add_option("input", wanted_.input, "a scan's number, or a BRDF file")->required();
     fit.add_option("--model", wanted_.model, "rpv, 'lambertian + ggx'; several with commas between");
     fit.add_option("-o,--file", wanted_.result, "what the results' names begin with");
-    CLI::App& compare = scan_leaf(data, "compare", "two scans in units of what does not cancel", Verb::DataCompare);
-    compare.add_option("other", wanted_.other_scan, "the other scan's number")->required()->check(CLI::PositiveNumber);
-    compare.add_option("-o,--file", wanted_.result, "the table of differences");
+    add_comparisons(data);
     scan_leaf(data, "describe", "reflectances, and how far readings are from their neighbours", Verb::DataDescribe);
     add_data_files(data, formats);
     leaf(data, "jobs", "what the worker program did and does", Verb::DataJobs);
     CLI::App& cancel = *leaf(data, "cancel", "end a job of the worker program", Verb::DataCancel);
     cancel.add_option("job", wanted_.job, "the job's number")->required()->check(CLI::PositiveNumber);
+  }
+
+  void add_comparisons(CLI::App& data) {
+    CLI::App& compare = *leaf(data, "compare", "in units of U, where what both share cancels", Verb::DataCompare);
+    compare.add_option("input", wanted_.input, "a scan's number, or a BRDF file")->required();
+    compare
+        .add_option("other", wanted_.other,
+                    "a scan's number, a BRDF file, or a model: \"rpv rho0=0.133 k=0.851 g=-0.114\"; \"rpv\" is fitted")
+        ->required();
+    compare.add_option("-o,--file", wanted_.result, "what the results' names begin with");
+    CLI::App& symmetry =
+        *leaf(data, "symmetry", "reciprocity, left and right, turns: pairs in units of U", Verb::DataSymmetry);
+    symmetry.add_option("input", wanted_.input, "a scan's number, or a BRDF file")->required();
+    symmetry.add_option("-o,--file", wanted_.result, "what the results' names begin with");
+    CLI::App& repeated = scan_leaf(data, "repeatability", "the spread of each point over a campaign, beside its U",
+                                   Verb::DataRepeatability);
+    repeated.add_option("others", wanted_.others, "the other scans (all of the first one's campaign and sample)")
+        ->check(CLI::PositiveNumber);
+    repeated.add_option("-o,--file", wanted_.result, "what the results' names begin with");
   }
 
   // Without a daemon, by the gonio-analyse beside this program.

@@ -40,6 +40,8 @@ enum class Verb : std::uint8_t {
   DataQuantities,
   DataFit,
   DataCompare,
+  DataSymmetry,
+  DataRepeatability,
   DataPlot,
   DataReport,
   DataDescribe,
@@ -74,11 +76,13 @@ struct Invocation {
   ReplayLine replay;
   std::string file;  ///< a plan, or where an export goes ("-": standard output)
   std::string export_format = "csv";
-  std::string input;       ///< a BRDF file
-  std::string result;      ///< where results go; empty: here, under their own names
-  std::string model;       ///< to be fitted; empty: the usual ones
-  std::int64_t job = 0;    ///< of the worker program
-  std::int64_t point = 0;  ///< to be traced
+  std::string input;                 ///< a BRDF file
+  std::string other;                 ///< data compare: a scan's number, a BRDF file, or a model
+  std::vector<std::int64_t> others;  ///< data repeatability
+  std::string result;                ///< where results go; empty: here, under their own names
+  std::string model;                 ///< to be fitted; empty: the usual ones
+  std::int64_t job = 0;              ///< of the worker program
+  std::int64_t point = 0;            ///< to be traced
   bool watch = false;
   bool now = false;        ///< pause
   bool follow = false;     ///< events

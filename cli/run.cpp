@@ -117,7 +117,11 @@ class Runner {
       case Verb::DataFit:
         return take_job_of_either("fit");
       case Verb::DataCompare:
-        return take_job({.kind = "compare", .scan = wanted_.scan, .other_scan = wanted_.other_scan}, wanted_.result);
+        return compare_data();
+      case Verb::DataSymmetry:
+        return take_job_of_either("symmetry");
+      case Verb::DataRepeatability:
+        return take_job({.kind = "repeatability", .scan = wanted_.scan, .others = wanted_.others}, wanted_.result);
       case Verb::DataReport:
         return take_job({.kind = "report", .scan = wanted_.scan}, wanted_.result);
       case Verb::DataDescribe:
@@ -385,12 +389,23 @@ class Runner {
 
   // Of a scan's number by the daemon, or of a file beside it.
   Result<int> take_job_of_either(const std::string& kind) {
-    std::int64_t scan = 0;
-    const std::string& text = wanted_.input;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
-    const bool is_number = error == std::errc() && end == text.data() + text.size() && scan > 0;
-    if (!is_number) return failure(become_analysis(file_job(kind)));
-    return take_job({.kind = kind, .scan = scan, .model = wanted_.model}, wanted_.result);
+    const std::optional<std::int64_t> scan = scan_number(wanted_.input);
+    if (!scan) return failure(become_analysis(file_job(kind)));
+    return take_job({.kind = kind, .scan = *scan, .model = wanted_.model}, wanted_.result);
+  }
+
+  Result<int> compare_data() {
+    const std::optional<std::int64_t> scan = scan_number(wanted_.input);
+    Result<api::AnalysisRequest> request = comparison_request(wanted_.other, scan.has_value());
+    if (!request) return failure(request.error());
+    if (scan) {
+      request->scan = *scan;
+      return take_job(*request, wanted_.result);
+    }
+    FileJob job = file_job("compare");
+    job.other_file = request->other_file;
+    job.other_model = request->other_model;
+    return failure(become_analysis(job));
   }
 
   // A job of the worker program: done, fetched, told of.

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "base/write_file.h"
 #include "daemon/analysis/worker_process.h"
+#include "protocol/api/base64.h"
 #include "protocol/api/json.h"
 
 namespace gonio::daemon {
@@ -40,8 +42,13 @@ Result<void> check(const api::AnalysisRequest& request) {
     return failure(bad_request("format", "\"" + request.format + "\"", joined(api::kExportFormats)));
   }
   if (request.kind == "trace" && !request.point) return failure(bad_request("point", "none", "a point's number"));
-  if (request.kind == "compare" && request.other_scan <= 0) {
-    return failure(bad_request("other_scan", std::to_string(request.other_scan), "a scan's number"));
+  if (request.kind == "compare") {
+    const int others =
+        (request.other_scan > 0 ? 1 : 0) + (request.other_model.empty() ? 0 : 1) + (request.other_file.empty() ? 0 : 1);
+    if (others != 1) {
+      return failure(bad_request("other_scan", fmt::format("{} things to compare with", others),
+                                 "one of other_scan, other_model, other_file"));
+    }
   }
   if (request.scan <= 0) return failure(bad_request("scan", std::to_string(request.scan), "a scan's number"));
   if (!(request.deadline_s > 0.0 && request.deadline_s <= kLongestDeadline)) {
@@ -193,10 +200,32 @@ void AnalysisDesk::run(const std::shared_ptr<Job>& job) {
   finish(*job, outcome);
 }
 
+// A client's file lies in a folder of its own beside the results, under its own last name. A job as JSON that is short
+// enough for a command line is what is left.
+Result<std::vector<std::string>> AnalysisDesk::command_of(const Job& job) const {
+  const std::string folder = folder_of(job.report.id);
+  std::vector<std::string> command{options_.program, "--store", options_.store_file,
+                                   "--into",         folder,    "--low-priority"};
+  api::AnalysisRequest request = job.request;
+  request.other_bytes.clear();
+  if (!request.other_file.empty()) {
+    const Result<std::string> bytes = api::from_base64(job.request.other_bytes);
+    if (!bytes) return failure(bytes.error());
+    const std::filesystem::path path =
+        std::filesystem::path(folder) / "other" / std::filesystem::path(request.other_file).filename();
+    std::error_code ignored;  // the file says what is wrong
+    std::filesystem::create_directories(path.parent_path(), ignored);
+    GONIO_TRY(write_file(path.string(), *bytes));
+    command.insert(command.end(), {"--other", path.string()});
+  }
+  command.insert(command.end(), {"--job", api::to_json(request)});
+  return command;
+}
+
 Result<api::AnalysisReport> AnalysisDesk::ask_worker(Job& job) {
-  Result<WorkerProcess> worker =
-      WorkerProcess::start({options_.program, "--store", options_.store_file, "--into", folder_of(job.report.id),
-                            "--job", api::to_json(job.request), "--low-priority"});
+  const Result<std::vector<std::string>> command = command_of(job);
+  if (!command) return failure(command.error());
+  Result<WorkerProcess> worker = WorkerProcess::start(*command);
   if (!worker) return failure(worker.error());
   const Instant deadline = clock_.now() + seconds(job.request.deadline_s);
   std::string last_step = "starting";

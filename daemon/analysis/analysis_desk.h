@@ -54,6 +54,7 @@ class AnalysisDesk {
 
   void work();
   void run(const std::shared_ptr<Job>& job);
+  [[nodiscard]] Result<std::vector<std::string>> command_of(const Job& job) const;
   /// How it ended, or why it did not.
   [[nodiscard]] Result<api::AnalysisReport> ask_worker(Job& job);
   void finish(Job& job, const Result<api::AnalysisReport>& outcome);

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "daemon/analysis/plot_residuals.h"
+#include "daemon/analysis/model_text.h"
+#include "daemon/analysis/plot_deviations.h"
 #include "reflectance/fit/fit_scan.h"
 #include "reflectance/fit/rank_fits.h"
 #include "reflectance/fit/scene_text.h"
 #include "reflectance/light/overcast_sky.h"
-#include "reflectance/measured/compare_scans.h"
 #include "reflectance/measured/scan_quantities.h"
 
 namespace gonio::analysis {
@@ -159,20 +159,51 @@ void add_quantity(std::vector<AnalysisFact>& facts, std::vector<std::string>& no
   }
 }
 
+DeviationsView residuals_of(const FitResult& fit, const std::string& stem) {
+  DeviationsView view{.stem = stem,
+                      .name = "residuals",
+                      .title = "What the fit of " + fit.model.name() + " leaves",
+                      .caption =
+                          "What the fit leaves of each reading, in units of its own random uncertainty: by phase "
+                          "angle, and over the directions of view; within 2 lie 95 % if model and uncertainties "
+                          "are true.",
+                      .label = "(reading - fit) / u of the reading",
+                      .is_in_u = !fit.has_even_weights,
+                      .points = {}};
+  if (fit.has_even_weights) {
+    view.caption = "What the fit leaves of each reading, by phase angle and over the directions of view.";
+    view.label = "reading - fit [sr⁻¹]";
+  }
+  for (const fit::FitResidual& r : fit.residuals) {
+    view.points.push_back({.geometry = r.geometry, .value = view.is_in_u ? r.z : in_per_steradian(r.difference)});
+  }
+  return view;
+}
+
 }  // namespace
 
-Result<FitTold> fit_told(const MeasuredScan& scan, const std::string& models, const std::string& stem) {
+Result<FitResult> fitted_model(const MeasuredScan& scan, const std::string& model) {
+  Result<RankedFits> fits = fitted(scan, model);
+  if (!fits) return failure(fits.error());
+  return fits->best();
+}
+
+Result<Told> fit_told(const MeasuredScan& scan, const std::string& models, const std::string& stem) {
   const Result<RankedFits> fits = fitted(scan, models);
   if (!fits) return failure(fits.error());
   const FitResult& best = fits->best();
-  FitTold told{.facts = fit_facts(best), .notes = rank_notes(*fits), .scene = {}, .residuals = {}};
-  const Result<std::string> scene = fit::scene_sample(best.surface);
-  if (scene) told.scene = *scene;
-  told.residuals = residuals_picture(stem, best);
+  Told told{.facts = fit_facts(best),
+            .notes = rank_notes(*fits),
+            .texts = {},
+            .pictures = {deviations_picture(residuals_of(best, stem))}};
+  told.notes.push_back("the fit as a model: \"" + text_of_surface(best.surface) + "\"");
+  if (const Result<std::string> scene = fit::scene_sample(best.surface)) told.texts.emplace_back(".toml", *scene);
   return told;
 }
 
-Result<std::vector<AnalysisFact>> quantities_told(const MeasuredScan& scan, std::vector<std::string>& notes) {
+Result<Told> quantities_told(const MeasuredScan& scan) {
+  Told told;
+  std::vector<std::string>& notes = told.notes;
   std::optional<reflectance::CapModel> cap;
   reflectance::InterpolationOptions options;
   if (const Result<RankedFits> fits = fitted(scan, "")) {
@@ -185,7 +216,7 @@ Result<std::vector<AnalysisFact>> quantities_told(const MeasuredScan& scan, std:
   }
   const auto quantities = reflectance::ScanQuantities::make(scan, options, cap);
   if (!quantities) return failure(quantities.error());
-  std::vector<AnalysisFact> facts;
+  std::vector<AnalysisFact>& facts = told.facts;
   const std::vector<Direction> incidences = incidences_of_scan(scan);
   for (const Direction& i : incidences) {
     add_quantity(facts, notes, quantities->rho_dh(i), fmt::format("({:.4g} deg)", in_degrees(i.theta())));
@@ -199,39 +230,6 @@ Result<std::vector<AnalysisFact>> quantities_told(const MeasuredScan& scan, std:
     const reflectance::Light overcast = reflectance::Sky(*reflectance::OvercastSky::make(1.0));
     add_quantity(facts, notes, quantities->reflectance_under(overcast), " (overcast sky)");
     add_quantity(facts, notes, quantities->remote_sensing_reflectance(overcast, up), " (overcast sky, nadir)");
-  }
-  return facts;
-}
-
-Result<ComparisonTold> comparison_told(const MeasuredScan& first, const MeasuredScan& second) {
-  const auto compared = reflectance::compare_scans(first, second);
-  if (!compared) return failure(compared.error());
-  ComparisonTold told;
-  told.facts = {{.name = "points of both", .value = static_cast<double>(compared->gaps.size()), .unit = "1"},
-                {.name = "chi-square",
-                 .value = compared->chi2,
-                 .unit = "1",
-                 .note = fmt::format("{} degrees of freedom, p = {:.3g}; what both scans share cancels",
-                                     compared->degrees_of_freedom, compared->p_value)},
-                {.name = "mean ratio", .value = compared->mean_ratio, .unit = "1", .note = ""},
-                {.name = "without a partner",
-                 .value = static_cast<double>(compared->unpaired_first + compared->unpaired_second),
-                 .unit = "1",
-                 .note = ""}};
-  if (const reflectance::PointGap* worst = compared->worst()) {
-    told.facts.push_back({.name = "largest difference",
-                          .value = worst->z,
-                          .unit = "u",
-                          .note = fmt::format("{:.3g} sr^-1 at ({:.4g}; {:.4g}, {:.4g}) deg",
-                                              in_per_steradian(worst->difference), in_degrees(worst->geometry.theta_i),
-                                              in_degrees(worst->geometry.theta_r), in_degrees(worst->geometry.phi_r))});
-  }
-  told.table = "theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,difference_per_sr,u_per_sr,z\n";
-  for (const reflectance::PointGap& gap : compared->gaps) {
-    told.table +=
-        fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.8g},{:.4g},{:.4g}\n", in_degrees(gap.geometry.theta_i),
-                    in_degrees(gap.geometry.phi_i), in_degrees(gap.geometry.theta_r), in_degrees(gap.geometry.phi_r),
-                    in_per_steradian(gap.difference), in_per_steradian(gap.u), gap.z);
   }
   return told;
 }

@@ -29,6 +29,7 @@ void add_options(CLI::App& app, Line& line) {
   app.set_version_flag("--version", "gonio-analyse " GONIO_VERSION);
   CLI::Option* store = app.add_option("--store", line.input.store_file, "goniod's database, read only");
   app.add_option("--file", line.input.input_file, "a BRDF file of any format that is known")->excludes(store);
+  app.add_option("--other", line.input.other_file, "another BRDF file, to compare with");
   app.add_option("--into", line.input.folder, "the folder of the results")->required();
   app.add_option("--name", line.input.name, "what their names begin with [scan-N]");
   app.add_option("--job", line.job, "the job: JSON as POST /api/v1/analysis takes it")->required();

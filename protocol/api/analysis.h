@@ -13,8 +13,8 @@
 namespace gonio::api {
 
 /// What the worker program can be asked for.
-inline constexpr std::array<std::string_view, 8> kAnalysisKinds{"export", "describe",   "plot", "report",
-                                                                "trace",  "quantities", "fit",  "compare"};
+inline constexpr std::array<std::string_view, 10> kAnalysisKinds{
+    "export", "describe", "plot", "report", "trace", "quantities", "fit", "compare", "symmetry", "repeatability"};
 /// Formats of an export. "csv+json" is our own, which loses nothing.
 inline constexpr std::array<std::string_view, 10> kExportFormats{"csv+json", "bird", "astm",  "zemax", "merl",
                                                                  "ssdd",     "pab",  "klems", "rgl",   "nexus"};
@@ -25,7 +25,11 @@ struct AnalysisRequest {
   std::int64_t scan = 0;              ///< whose result
   std::string format;                 ///< export: one of kExportFormats
   std::optional<std::int64_t> point;  ///< trace
-  std::int64_t other_scan = 0;        ///< compare
+  std::int64_t other_scan = 0;        ///< compare: with this scan, or with
+  std::string other_model;  ///< a model by its numbers ("rpv rho0=0.133 k=0.851 g=-0.114"), or fitted ("rpv"), or with
+  std::string other_file;   ///< a BRDF file of this name, any format that is read: its bytes come along,
+  std::string other_bytes;  ///< in base64 (RFC 4648), for the daemon opens no client's path
+  std::vector<std::int64_t> others;  ///< repeatability: scans beside the first; none: its campaign's, of its sample
   std::string model;          ///< fit: "rpv", "lambertian + ggx", several with commas between; empty: the usual ones
   double deadline_s = 600.0;  ///< up to 3600: the job is ended then
 };

@@ -151,8 +151,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PointBudgetReport, scan, point, 
                                                 below_per_sr, above_per_sr, method, flags, terms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ReferenceImport, text, file, shape, shape_file, shape_of, replace)
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisRequest, kind, scan, format, point, other_scan, model,
-                                                deadline_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisRequest, kind, scan, format, point, other_scan, other_model,
+                                                other_file, other_bytes, others, model, deadline_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisLoss, kind, values, what)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisFile, name, bytes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AnalysisFact, name, value, expanded_u, unit, note)

@@ -125,7 +125,7 @@ inline constexpr std::array kRoutes{
     Route{RouteId::CalibrationChart, Method::Get, "/api/v1/calibration-chart", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::ScanRecompute, Method::Post, "/api/v1/scans/{scan}/recompute", Permission::Operator, kJson, kJson,
           true, kSmallBody},
-    Route{RouteId::AnalysisStart, Method::Post, "/api/v1/analysis", Permission::Viewer, kJson, kJson, true, kSmallBody},
+    Route{RouteId::AnalysisStart, Method::Post, "/api/v1/analysis", Permission::Viewer, kJson, kJson, true, kPlanBody},
     Route{RouteId::AnalysisList, Method::Get, "/api/v1/analysis", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::AnalysisOne, Method::Get, "/api/v1/analysis/{job}", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::AnalysisFile, Method::Get, "/api/v1/analysis/{job}/file", Permission::Viewer, "", kBytes, false, 0},

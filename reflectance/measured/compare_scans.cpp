@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,6 +49,38 @@ Result<ScanComparison> finished(ScanComparison comparison, const GapMembers& mem
   return comparison;
 }
 
+// An exact partner, as far as sums of weights go.
+constexpr double kAsGoodAsExact = 1e-9;
+
+// A scan beside what `partner` makes of each of its points; nothing is no partner.
+template <class Partner>
+Result<ScanComparison> compare_with(const MeasuredScan& given, Partner partner) {
+  GONIO_TRY(check(given));
+  GONIO_TRY(check_random_parts(given));
+  const MeasuredScan scan = with_unknown_as_random(given);
+  CommonComponents components;
+  const std::vector<std::uint32_t> numbers = components.add(scan);
+  ScanComparison comparison;
+  GapMembers members;
+  for (const std::size_t k : usable_points(scan)) {
+    const MeasuredPoint& p = scan.points[k];
+    Result<std::optional<GroupMember>> other = partner(k, p);
+    if (!other) return failure(std::move(other).error());
+    if (!*other) {
+      ++comparison.unpaired_first;
+      continue;
+    }
+    add_gap(comparison, members, {.first = k, .second = k, .geometry = p.geometry}, group_member(p, numbers),
+            **std::move(other));
+  }
+  if (!comparison.gaps.empty()) return finished(std::move(comparison), members);
+  return failure(
+      {.code = ErrorCode::InvalidInput,
+       .tried = fmt::format("compare the scan \"{}\"", scan.name),
+       .seen = fmt::format("none of its {} points lies where the other was measured", comparison.unpaired_first),
+       .limit = "at least one"});
+}
+
 }  // namespace
 
 const PointGap* ScanComparison::worst() const {
@@ -92,27 +125,41 @@ Result<ScanComparison> compare_scans(const MeasuredScan& first, const MeasuredSc
 }
 
 Result<ScanComparison> compare_with_surface(const MeasuredScan& scan, const Surface& surface) {
-  GONIO_TRY(check(scan));
-  GONIO_TRY(check_random_parts(scan));
-  // An exact partner, as far as sums of weights go.
-  constexpr double kAsGoodAsExact = 1e-9;
-  CommonComponents components;
-  const std::vector<std::uint32_t> numbers = components.add(scan);
-  ScanComparison comparison;
-  GapMembers members;
-  for (const std::size_t k : usable_points(scan)) {
-    const MeasuredPoint& p = scan.points[k];
+  return compare_with(scan, [&](std::size_t k, const MeasuredPoint& p) -> Result<std::optional<GroupMember>> {
     const double f = surface.eval(p.geometry).si();
-    if (!std::isfinite(f)) {
-      return failure({.code = ErrorCode::InvalidInput,
-                      .tried = fmt::format("compare the scan \"{}\" with a surface \"{}\"", scan.name, surface.model()),
-                      .seen = fmt::format("the surface is {} /sr at point {}", f, k),
-                      .limit = "a finite number"});
+    if (std::isfinite(f)) return GroupMember{.value = f, .u_random = kAsGoodAsExact * p.u_random.si(), .shared = {}};
+    return failure({.code = ErrorCode::InvalidInput,
+                    .tried = fmt::format("compare the scan \"{}\" with a surface \"{}\"", scan.name, surface.model()),
+                    .seen = fmt::format("the surface is {} /sr at point {}", f, k),
+                    .limit = "a finite number"});
+  });
+}
+
+Result<ScanComparison> compare_with_table(const MeasuredScan& scan, const TabulatedSurface& table,
+                                          const MeasuredScan& readings) {
+  GONIO_TRY(check(readings));
+  const MeasuredScan known = with_unknown_as_random(readings);
+  const std::vector<std::size_t> point = usable_points(known);
+  // The readings' own components come after those of the scan, unless both name one source.
+  CommonComponents components;
+  (void)components.add(scan);
+  const std::vector<std::uint32_t> numbers = components.add(known);
+  std::vector<ReadingShare> shares;
+  return compare_with(scan, [&](std::size_t, const MeasuredPoint& p) -> Result<std::optional<GroupMember>> {
+    const DirectionPair pair = pair_of(p);
+    shares.clear();
+    if (!table.shares(pair.i, pair.r, shares)) return std::optional<GroupMember>();
+    GroupMember member{
+        .value = table.eval(pair.i, pair.r).si(), .u_random = kAsGoodAsExact * p.u_random.si(), .shared = {}};
+    double variance = 0.0;
+    for (const ReadingShare& share : shares) {
+      const GroupMember reading = group_member(known.points[point[share.reading]], numbers);
+      variance += share.weight * share.weight * reading.u_random * reading.u_random;
+      member.shared.add(reading.shared, share.weight);
     }
-    add_gap(comparison, members, {.first = k, .second = k, .geometry = p.geometry}, group_member(p, numbers),
-            {.value = f, .u_random = kAsGoodAsExact * p.u_random.si(), .shared = {}});
-  }
-  return finished(std::move(comparison), members);
+    member.u_random = std::max(member.u_random, std::sqrt(variance));
+    return std::optional(std::move(member));
+  });
 }
 
 }  // namespace gonio::reflectance

@@ -9,6 +9,7 @@
 #include "reflectance/check/symmetry_groups.h"
 #include "reflectance/measured/measured_scan.h"
 #include "reflectance/surface/surface.h"
+#include "reflectance/table/tabulated_surface.h"
 
 namespace gonio::reflectance {
 
@@ -21,7 +22,7 @@ struct CompareOptions {
 /// Two values of one geometry.
 struct PointGap {
   std::size_t first = 0;   ///< index of the point in the first scan
-  std::size_t second = 0;  ///< in the second; the same as `first` beside a surface
+  std::size_t second = 0;  ///< in the second; the same as `first` beside a surface or a table
   Geometry geometry;       ///< of the first
   Brdf difference;         ///< first - second
   Brdf u;                  ///< k = 1, of what does not cancel
@@ -51,5 +52,12 @@ struct ScanComparison {
 /// A scan beside a surface that is taken to be exact, be it a formula, another scan's fit or its interpolant: all
 /// components of the scan count. Errors: likewise; a value of the surface that is not finite.
 [[nodiscard]] Result<ScanComparison> compare_with_surface(const MeasuredScan& scan, const Surface& surface);
+
+/// A scan beside another instrument's readings, read between them as `table` does, which was made of the usable points
+/// of `readings`, in their order. Their uncertainties count by the table's weights, what both share (equal `source`)
+/// cancels; the interpolation's own error is not in u. Points that the table does not cover are counted as
+/// `unpaired_first`. Errors: likewise; InvalidInput where it covers none. `readings` may be without uncertainties.
+[[nodiscard]] Result<ScanComparison> compare_with_table(const MeasuredScan& scan, const TabulatedSurface& table,
+                                                        const MeasuredScan& readings);
 
 }  // namespace gonio::reflectance

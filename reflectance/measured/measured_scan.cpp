@@ -82,7 +82,22 @@ Brdf standard_u(const MeasuredPoint& point) {
   return per_steradian(std::sqrt(u2));
 }
 
-ScanSymmetryPoints symmetry_points(const MeasuredScan& scan) {
+MeasuredScan with_unknown_as_random(MeasuredScan scan) {
+  for (MeasuredPoint& p : scan.points) {
+    double u = p.u_random.si();
+    const auto is_unknown = [&](const SharedEffect& e) {
+      if (e.component >= scan.components.size() || scan.components[e.component].is_pattern_known) return false;
+      u = std::hypot(u, e.per_sd.si());
+      return true;
+    };
+    if (!p.is_flagged) std::erase_if(p.shared, is_unknown);
+    p.u_random = per_steradian(u);
+  }
+  return scan;
+}
+
+ScanSymmetryPoints symmetry_points(const MeasuredScan& given) {
+  const MeasuredScan scan = with_unknown_as_random(given);
   ScanSymmetryPoints all{.points = {}, .index = usable_points(scan)};
   for (const std::size_t k : all.index) {
     const MeasuredPoint& p = scan.points[k];

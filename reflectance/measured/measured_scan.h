@@ -50,7 +50,12 @@ struct MeasuredScan {
 /// The combined standard uncertainty, k = 1.
 [[nodiscard]] Brdf standard_u(const MeasuredPoint& point);
 
-/// The scan's usable points for check/symmetry_check.h, and what the indices there stand for.
+/// The scan with effects whose pattern is not known (`is_pattern_known`) counted as if each point had its own: they do
+/// not cancel between points, nor with anything that does not share them.
+[[nodiscard]] MeasuredScan with_unknown_as_random(MeasuredScan scan);
+
+/// The scan's usable points for check/symmetry_check.h, effects of unknown pattern as random ones, and what the indices
+/// there stand for.
 struct ScanSymmetryPoints {
   std::vector<SymmetryPoint> points;
   std::vector<std::size_t> index;  ///< of MeasuredScan::points

@@ -46,11 +46,15 @@ std::vector<Occurrences> by_geometry(std::span<const MeasuredScan> scans, const 
 RepeatedPoint repeated_point(std::span<const MeasuredScan> scans, const Occurrences& group) {
   const auto count = static_cast<double>(group.size());
   double mean = 0.0;
-  double u2 = 0.0;
+  double random2 = 0.0;
+  double own2 = 0.0;
   for (const Occurrence& o : group) {
     const MeasuredPoint& p = scans[o.scan].points[o.point];
     mean += p.value.si() / count;
-    u2 += p.u_random.si() * p.u_random.si() / count;
+    random2 += p.u_random.si() * p.u_random.si() / count;
+    for (const SharedEffect& e : p.shared) {
+      if (scans[o.scan].components[e.component].source.empty()) own2 += e.per_sd.si() * e.per_sd.si() / count;
+    }
   }
   double squares = 0.0;
   for (const Occurrence& o : group) {
@@ -61,7 +65,8 @@ RepeatedPoint repeated_point(std::span<const MeasuredScan> scans, const Occurren
           .count = group.size(),
           .mean = per_steradian(mean),
           .scatter = per_steradian(std::sqrt(squares / (count - 1.0))),
-          .u_random = per_steradian(std::sqrt(u2))};
+          .u_random = per_steradian(std::sqrt(random2)),
+          .u = per_steradian(std::sqrt(random2 + own2))};
 }
 
 void add_offsets(std::span<const MeasuredScan> scans, const std::vector<Occurrences>& groups, Repeatability& result) {
@@ -81,15 +86,46 @@ void add_offsets(std::span<const MeasuredScan> scans, const std::vector<Occurren
   }
 }
 
+// Whether a relative scatter means something there.
+bool stands_out(const RepeatedPoint& p) {
+  return std::abs(p.mean.si()) > 3.0 * p.u_random.si();
+}
+
 double pooled_relative_scatter(const std::vector<RepeatedPoint>& points) {
   double squares = 0.0;
   double freedom = 0.0;
   for (const RepeatedPoint& p : points) {
-    if (std::abs(p.mean.si()) <= 3.0 * p.u_random.si()) continue;
+    if (!stands_out(p)) continue;
     const double relative = p.scatter / p.mean;
     const auto dof = static_cast<double>(p.count - 1);
     squares += dof * relative * relative;
     freedom += dof;
+  }
+  return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
+}
+
+double scatter_of_offsets(const std::vector<ScanOffset>& offsets) {
+  double mean = 0.0;
+  double squares = 0.0;
+  const auto count = static_cast<double>(offsets.size());
+  for (const ScanOffset& o : offsets) mean += o.mean_offset / count;
+  for (const ScanOffset& o : offsets) squares += (o.mean_offset - mean) * (o.mean_offset - mean);
+  return std::sqrt(squares / (count - 1.0));
+}
+
+// About the geometries' means with each scan's offset taken out; an offset costs a degree of freedom, but for one.
+double scatter_without_offsets(std::span<const MeasuredScan> scans, const std::vector<Occurrences>& groups,
+                               const Repeatability& result) {
+  double squares = 0.0;
+  double freedom = 1.0 - static_cast<double>(scans.size());
+  for (std::size_t n = 0; n < groups.size(); ++n) {
+    const RepeatedPoint& p = result.points[n];
+    if (!stands_out(p)) continue;
+    for (const Occurrence& o : groups[n]) {
+      const double off = scans[o.scan].points[o.point].value / p.mean - 1.0 - result.scans[o.scan].mean_offset;
+      squares += off * off;
+    }
+    freedom += static_cast<double>(p.count - 1);
   }
   return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
 }
@@ -127,6 +163,8 @@ Result<Repeatability> repeatability(std::span<const MeasuredScan> scans, const C
   }
   add_offsets(scans, groups, result);
   result.relative_scatter = pooled_relative_scatter(result.points);
+  result.relative_between = scatter_of_offsets(result.scans);
+  result.relative_within = scatter_without_offsets(scans, groups, result);
   const Result<GroupChiSquare> chi = group_chi_square(members);
   if (!chi) return failure(chi.error());
   result.chi2 = chi->chi2;

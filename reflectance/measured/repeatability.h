@@ -17,6 +17,7 @@ struct RepeatedPoint {
   Brdf mean;
   Brdf scatter;   ///< standard deviation of one value about the mean, with count - 1
   Brdf u_random;  ///< root mean square of what the scans state for it
+  Brdf u;         ///< likewise with what each scan draws anew (components without a source): what scatter should be
 };
 
 /// One scan among the others.
@@ -30,6 +31,8 @@ struct Repeatability {
   std::vector<RepeatedPoint> points;
   std::vector<ScanOffset> scans;
   double relative_scatter = 0.0;  ///< root of the pooled relative variance: of geometries with a mean above 3 u_random
+  double relative_between = 0.0;  ///< of that: how the scans' mean offsets scatter, as with a certificate drawn anew
+  double relative_within = 0.0;   ///< what is left when each scan's offset is taken out of its values
   double chi2 = 0.0;              ///< of all values about their geometries' means, with what the scans share
   std::size_t degrees_of_freedom = 0;
   double p_value = 1.0;

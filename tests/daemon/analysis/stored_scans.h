@@ -14,12 +14,16 @@
 
 namespace gonio::analysis::test {
 
-/// A store with one scan whose values a test makes up: what lies behind them is not the point here.
+/// A store with scans whose values a test makes up: what lies behind them is not the point here.
 class StoredValues {
  public:
   /// `value` of a geometry, sr^-1.
   template <class Value>
-  StoredValues(const api::Plan& plan, Value value, std::uint32_t flags = 0) {
+  StoredValues(const api::Plan& plan, Value value, std::uint32_t flags = 0) : id_(add(plan, value, flags)) {}
+
+  /// One more scan, of the same instrument and standard.
+  template <class Value>
+  daemon::ScanId add(const api::Plan& plan, Value value, std::uint32_t flags = 0) {
     daemon::NewScan scan = daemon::test::new_scan(plan);
     daemon::NewBrdf brdf{
         .code_version = "test", .inputs_json = "{}", .component_names = {"certificate [shared, u in 1]"}};
@@ -33,9 +37,26 @@ class StoredValues {
                            .reported = point.geometry,
                            .sensitivities_per_sr = {0.0, 0.01 * f}});
     }
-    id_ = commit({std::move(scan)});
-    brdf.scan = id_;
-    if (!brdf.rows.empty()) commit({std::move(brdf)});
+    brdf.scan = commit({std::move(scan)});
+    const daemon::ScanId id = brdf.scan;
+    commit({std::move(brdf)});
+    return id;
+  }
+
+  /// One whose BRDF has no value.
+  daemon::ScanId add_empty(const api::Plan& plan) {
+    const daemon::ScanId id = commit({daemon::test::new_scan(plan)});
+    commit({daemon::NewBrdf{.scan = id, .code_version = "test", .inputs_json = "{}"}});
+    return id;
+  }
+
+  /// As if it had been measured to its end.
+  void end(daemon::ScanId id) {
+    using enum daemon::ScanState;
+    for (const auto& [from, to] : {std::pair{Queued, Preparing}, std::pair{Preparing, Running},
+                                   std::pair{Running, Finishing}, std::pair{Finishing, Done}}) {
+      commit({daemon::ScanTransition{.scan = id, .from = from, .to = to, .who = "test"}});
+    }
   }
 
   [[nodiscard]] const std::string& file() const { return path_; }
@@ -53,7 +74,7 @@ class StoredValues {
   ManualClock clock_;
   std::unique_ptr<daemon::StoreWriter> writer_ =
       std::move(daemon::StoreWriter::open({.path = path_, .boot_id = "boot", .version = "test"}, clock_)).value();
-  daemon::ScanId id_ = 0;
+  daemon::ScanId id_;  // last: the first scan is stored by what stands above
 };
 
 /// 0.05 everywhere, and 1 at (30, 30, 0); no shadow stands in the way of the plan that goes with it.
