@@ -3,7 +3,6 @@
 // and of rho_dh hold the truth.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "reflectance/surface/surface_sum.h"
 #include "sim/devices/reading_level.h"
 #include "tests/coverage/coverage_scene.h"
+#include "tests/support/interval_tally.h"
 
 namespace gonio::coverage {
 namespace {
@@ -64,37 +64,6 @@ class Scans {
   calibration::ReferenceStandard standard_;
 };
 
-class Tally {
- public:
-  Tally(std::string name, double truth) : name_(std::move(name)), truth_(truth) {}
-
-  void add(double value, double expanded) {
-    const double off = value - truth_;
-    held_ += std::abs(off) <= expanded ? 1 : 0;
-    squares_ += off * off;
-    half_ += 0.5 * expanded;
-    ++count_;
-  }
-
-  // 95.45 +- 3 %, and mean(U/2) at most 1.3 times the RMS error.
-  void expect_true() const {
-    const double share = 100.0 * held_ / count_;
-    const double ratio = half_ / count_ / std::sqrt(squares_ / count_);
-    std::printf("%-24s held %.2f %%, mean(U/2) / RMS error %.3f, U/2 %.2g of it\n", name_.c_str(), share, ratio,
-                half_ / count_ / std::abs(truth_));
-    EXPECT_NEAR(share, 95.45, 3.0) << name_;
-    EXPECT_LE(ratio, 1.3) << name_;
-  }
-
- private:
-  std::string name_;
-  double truth_;
-  int held_ = 0;
-  int count_ = 0;
-  double squares_ = 0.0;
-  double half_ = 0.0;
-};
-
 struct Case {
   CoverageScene scene;
   const char* model;
@@ -109,9 +78,9 @@ void expect_chain_holds(const Case& c) {
   const auto i = reflectance::Direction::from_angles(degrees(30.0), {});
   double chi2 = 0.0;
   double freedom = 0.0;
-  std::vector<Tally> tallies;
+  std::vector<test::IntervalTally> tallies;
   for (const reflectance::NamedNumber& p : c.truth) tallies.emplace_back(p.name, p.value);
-  Tally rho("rho_dh(30 deg)", reflectance::rho_dh(scans.truth(), i).value);
+  test::IntervalTally rho("rho_dh(30 deg)", reflectance::rho_dh(scans.truth(), i).value);
   for (std::uint64_t seed = c.scene.first_seed; seed < c.scene.first_seed + kRepetitions; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const MeasuredScan scan = scans.measure(seed);
@@ -128,7 +97,7 @@ void expect_chain_holds(const Case& c) {
     rho.add(q.value, q.expanded);
   }
   std::printf("chi-square by degrees of freedom %.3f\n", chi2 / freedom);
-  for (const Tally& tally : tallies) tally.expect_true();
+  for (const test::IntervalTally& tally : tallies) tally.expect_true();
   rho.expect_true();
 }
 

@@ -2,7 +2,6 @@
 // how often the 95.45 % intervals hold the truth.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "reflectance/measured/scan_quantities.h"
 #include "tests/reflectance/measured/simulated_scan.h"
 #include "tests/reflectance/surfaces.h"
+#include "tests/support/interval_tally.h"
 
 namespace gonio::fit::test {
 namespace {
@@ -25,44 +25,11 @@ using reflectance::test::SimulatedGrid;
 
 constexpr int kRepetitions = 400;
 
-class Coverage {
- public:
-  explicit Coverage(std::string name, double truth) : name_(std::move(name)), truth_(truth) {}
-
-  void add(double value, double expanded) {
-    const double off = value - truth_;
-    held_ += std::abs(off) <= expanded ? 1 : 0;
-    squares_ += off * off;
-    half_widths_ += 0.5 * expanded;
-    ++count_;
-  }
-
-  // Held 95.45 +- 3 %, and no more than 1.3 times too wide.
-  void expect_true() const {
-    const double share = 100.0 * held_ / count_;
-    const double rms = std::sqrt(squares_ / count_);
-    const double ratio = half_widths_ / count_ / rms;
-    std::printf("%-28s held %.2f %%   mean(U/2) / RMS error %.3f   U/2 relative %.2g\n", name_.c_str(), share, ratio,
-                half_widths_ / count_ / std::abs(truth_));
-    EXPECT_EQ(count_, kRepetitions);
-    EXPECT_NEAR(share, 95.45, 3.0) << name_;
-    EXPECT_LE(ratio, 1.3) << name_;
-  }
-
- private:
-  std::string name_;
-  double truth_;
-  int held_ = 0;
-  int count_ = 0;
-  double squares_ = 0.0;
-  double half_widths_ = 0.0;
-};
-
 // Fits the model to scans of its own kind and counts each number of `truth`.
 void expect_coverage(const char* model_name, const reflectance::Parameters& truth, const SimulatedErrors& errors) {
   const Surface surface = reflectance::surface(model_name, truth);
   const FitModel model = FitModel::make(model_name).value();
-  std::vector<Coverage> coverages;
+  std::vector<gonio::test::IntervalTally> coverages;
   for (const reflectance::NamedNumber& p : truth) {
     coverages.emplace_back(std::string(model_name) + " " + p.name, p.value);
   }
@@ -103,7 +70,7 @@ TEST(ScanCoverage, HoldsForRhoDhOfTheWheat) {
                                      FitModel::make("lambertian").value()};
   const SimulatedGrid grid{.theta_i = {0, 15, 30, 45, 60}, .theta_r = {0, 10, 20, 30, 40, 50, 60, 70, 80}};
   const auto i = reflectance::Direction::from_angles(degrees(30.0), {});
-  Coverage coverage("rho_dh(30 deg) of wheat", reflectance::rho_dh(reflectance::wheat(), i).value);
+  gonio::test::IntervalTally coverage("rho_dh(30 deg) of wheat", reflectance::rho_dh(reflectance::wheat(), i).value);
   for (std::uint64_t seed = 1; seed <= kRepetitions; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const MeasuredScan scan = simulated_scan(reflectance::wheat(), geometries(grid), {}, seed);
