@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
+
+#include "calibration/drift_bridge.h"
 
 namespace gonio::calibration {
 namespace {
@@ -27,31 +28,57 @@ std::map<std::int64_t, ScanReadings> visits_by_wavelength(const ScanReadings& sc
   return parts;
 }
 
+// A visit's part in q at the moment: its own noise as a term, its darks as those of the reading.
 void add_visit(AnchorReading& found, const ReferenceVisit* visit, double weight, double level) {
   if (visit == nullptr || weight == 0.0) return;
   found.terms.push_back({.key = {ComponentSource::VisitNoise, visit->visit_id},
                          .name = fmt::format("reference visit {}", visit->visit_id),
-                         .u = visit->u,
+                         .u = visit->u_own,
                          .unit = "1",
-                         .per_sd = -weight * visit->u / level});
+                         .per_sd = -weight * visit->u_own / level,
+                         .divides = true});
+  for (DarkShare share : visit->reading.darks) {
+    share.dq_dlevel *= weight;
+    share.light_share *= weight;
+    found.reading.darks.push_back(share);
+  }
 }
 
-// As a drift between two visits of a scan at equal geometries: change sqrt(p (1 - p)) within the interval, and as much
-// again as it changed beyond it.
-void add_change(AnchorReading& found, const DriftLevel& at) {
-  const double part = at.weight_after * (1.0 - at.weight_after);
-  const double u = at.is_between() ? at.wander * std::sqrt(part) : at.change * at.beyond;
-  if (u == 0.0) return;
-  const std::int64_t before = at.before == nullptr ? -1 : at.before->visit_id;
-  const std::int64_t after = at.after == nullptr ? -1 : at.after->visit_id;
-  found.terms.push_back(
-      {.key = {ComponentSource::Drift, before, after},
-       .name = fmt::format("drift between visits {} and {}", before, after),
-       .u = u,
-       .unit = "1",
-       .per_sd = -u / at.level,
-       .degrees_of_freedom = at.is_between() ? at.wander_dof : std::numeric_limits<double>::infinity(),
-       .is_pattern_known = false});
+std::int64_t id_of_visit(const ReferenceVisit* visit) {
+  return visit == nullptr ? -1 : visit->visit_id;
+}
+
+// Before the first visit or after the last: as much again as it changed in the nearest interval.
+void add_onward(AnchorReading& found, const DriftLevel& at) {
+  const double u = at.change * at.beyond;
+  const std::int64_t before = id_of_visit(at.before);
+  const std::int64_t after = id_of_visit(at.after);
+  found.terms.push_back({.key = {ComponentSource::Drift, before, after},
+                         .name = fmt::format("drift between visits {} and {}", before, after),
+                         .u = u,
+                         .unit = "1",
+                         .per_sd = -u / at.level,
+                         .is_pattern_known = false,
+                         .divides = true});
+}
+
+// What a line between two visits misses (drift_bridge.h).
+void add_missed(AnchorReading& found, const DriftLevel& at) {
+  const std::int64_t before = id_of_visit(at.before);
+  const std::int64_t after = id_of_visit(at.after);
+  const BridgeParts bridge = bridge_at(at.weight_after);
+  for (std::size_t k = 0; k < kBridgeModes; ++k) {
+    found.terms.push_back({.key = {ComponentSource::Drift, before, after, static_cast<std::int64_t>(k) + 1},
+                           .name = fmt::format("drift between visits {} and {}, course {}", before, after, k + 1),
+                           .u = at.wander,
+                           .unit = "1",
+                           .per_sd = -at.wander * bridge.mode[k] / at.level,
+                           .degrees_of_freedom = at.wander_dof,
+                           .is_of_the_wander = std::isfinite(at.wander_dof),
+                           .divides = true});
+  }
+  found.u_drift_rest = at.wander * bridge.rest / at.level;
+  found.drift_rest_dof = at.wander_dof;
 }
 
 AnchorReading reading_like(const ReferenceVisit& visit, double level) {
@@ -59,6 +86,7 @@ AnchorReading reading_like(const ReferenceVisit& visit, double level) {
   found.reading.q *= level / visit.level;
   found.reading.u_noise = 0.0;
   found.reading.u_monitor = 0.0;
+  found.reading.darks.clear();
   return found;
 }
 
@@ -92,7 +120,7 @@ Result<AnchorReading> AnchorHistory::at(Wavelength wavelength, Instant when) con
   AnchorReading found = reading_like(is_after_nearer ? *between->after : *between->before, between->level);
   add_visit(found, between->before, 1.0 - between->weight_after, between->level);
   add_visit(found, between->after, between->weight_after, between->level);
-  add_change(found, *between);
+  between->is_between() ? add_missed(found, *between) : add_onward(found, *between);
   found.is_extrapolated = !between->is_between();
   found.is_large = between->is_large;
   return found;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -16,12 +17,15 @@ namespace gonio::calibration {
 
 /// What the standard would have read at the anchor at some moment.
 struct AnchorReading {
-  NormalisedReading
-      reading;  ///< q between the visits, the rest of the nearest one; its own noise is 0: it stands in `terms`
+  /// q between the visits, with the darks of both; the rest of the nearest one. Its own noise is 0: it stands in
+  /// `terms`.
+  NormalisedReading reading;
   std::int64_t reading_id = 0;      ///< of the nearest visit
   std::vector<RelativeTerm> terms;  ///< each visit's noise, and what a straight line between two of them misses
-  bool is_extrapolated = false;     ///< before the first visit or after the last, or there is only one
-  bool is_large = false;            ///< the two visits differ by more than the plan's limit
+  double u_drift_rest = 0.0;        ///< relative: what of the latter no other reading shares
+  double drift_rest_dof = std::numeric_limits<double>::infinity();
+  bool is_extrapolated = false;  ///< before the first visit or after the last, or there is only one
+  bool is_large = false;         ///< the two visits differ by more than the plan's limit
 };
 
 /// The visits of the standard at the anchor, by wavelength: q is linear in time between two of them. What the line

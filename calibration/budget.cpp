@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -117,16 +118,24 @@ Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm
   const double random2 = sum_of_squares(budget.random);
   const double shared2 = sum_of_squares(budget.shared);
   const double u = std::sqrt(random2 + shared2);
-  double sum4 = 0.0;       // of u_i^4 / nu_i
+  double sum4 = 0.0;     // of u_i^4 / nu_i
+  double wander2 = 0.0;  // of all that comes from one estimate
+  double wander_dof = std::numeric_limits<double>::infinity();
   double rectangle = 0.0;  // the largest
   for (const auto* terms : {&budget.random, &budget.shared}) {
     for (const BudgetTerm& term : *terms) {
       const Component& component = components[term.component];
       const double size2 = square(term.per_sd.si());
-      if (!std::isinf(component.degrees_of_freedom)) sum4 += square(size2) / component.degrees_of_freedom;
+      if (component.is_of_the_wander) {
+        wander2 += size2;
+        wander_dof = std::min(wander_dof, component.degrees_of_freedom);
+      } else if (!std::isinf(component.degrees_of_freedom)) {
+        sum4 += square(size2) / component.degrees_of_freedom;
+      }
       if (component.distribution == Distribution::Rectangular) rectangle = std::max(rectangle, size2);
     }
   }
+  if (!std::isinf(wander_dof)) sum4 += square(wander2) / wander_dof;
   if (sum4 > 0.0) budget.degrees_of_freedom = square(square(u)) / sum4;
   budget.u_random = per_steradian(std::sqrt(random2));
   budget.u_shared = per_steradian(std::sqrt(shared2));

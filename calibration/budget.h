@@ -35,6 +35,9 @@ struct Component {
   /// Of a shared component: true where one error acts on all points with the signs of their terms, so that it cancels
   /// between them; false where the terms are sizes alone and nobody knows the error's course over the points.
   bool is_pattern_known = true;
+  /// Its u is that of the scan's one estimate of wander, as of all components so marked: for the degrees of freedom
+  /// their squares count as one.
+  bool is_of_the_wander = false;
 };
 
 /// What one standard deviation of a component does to a value. Absolute, in sr^-1, for the value may be 0 or negative.
@@ -63,8 +66,8 @@ struct Budget {
 };
 
 /// Sorts the terms, merges those of one component (random: root sum of squares; shared: signed sum), leaves out those
-/// that are 0, and adds all up: u_c, the effective degrees of freedom (JCGM 100:2008, eq G.2b), k and U. Both lists are
-/// left sorted and merged: the budget's own.
+/// that are 0, and adds all up: u_c, the effective degrees of freedom (JCGM 100:2008, eq G.2b, over estimates that are
+/// independent), k and U. Both lists are left sorted and merged: the budget's own.
 [[nodiscard]] Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm>& random,
                                  std::vector<BudgetTerm>& shared);
 

@@ -181,7 +181,7 @@ bool is_drifted(const std::optional<DriftLevel>& drift) {
 }
 
 std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const DirectionSlopes& slopes,
-                       const ConeCorrection& cones, bool borrowed) {
+                       const ConeCorrection& cones, const TermList& terms, bool borrowed) {
   std::uint32_t flags = 0;
   const auto set = [&](PointFlag flag, bool on) { flags |= on ? static_cast<std::uint32_t>(flag) : 0U; };
   constexpr double kLinearUpTo = 0.05;
@@ -192,8 +192,10 @@ std::uint32_t flags_of(const PairedPoint& pair, const Budget& budget, const Dire
   set(PointFlag::BorrowedReference, borrowed);
   set(PointFlag::Drifted, is_drifted(pair.sample_drift) || is_drifted(pair.reference_drift) || pair.is_anchor_drifted);
   set(PointFlag::Mixed, pair.is_mixed);
-  set(PointFlag::UncertainDivisor,
-      std::hypot(pair.reference.u_noise, pair.reference.u_monitor) > kLinearUpTo * pair.reference.q);
+  set(PointFlag::UncertainDivisor, relative_divisor(terms) > kLinearUpTo);
+  set(PointFlag::ReferenceExtrapolated, pair.is_beyond_standard);
+  set(PointFlag::Blocked, pair.is_blocked);
+  set(PointFlag::Saturated, pair.sample.has_saturated || pair.reference.has_saturated);
   set(PointFlag::InstrumentLimited, cones.is_limited);
   set(PointFlag::MonteCarlo, budget.method == BudgetMethod::MonteCarlo);
   set(PointFlag::FewRepeats, budget.degrees_of_freedom < kFewRepeats);
@@ -232,7 +234,7 @@ CalibratedPoint finish_point(std::size_t n, const Neighbourhoods& around, const 
         shop.options.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(n) * 0x2545F491ULL;
     propagate_by_monte_carlo(pair.value, terms, bent, stream, point.budget);
   }
-  point.flags = flags_of(pair, point.budget, slopes, cones, origin.is_borrowed);
+  point.flags = flags_of(pair, point.budget, slopes, cones, terms, origin.is_borrowed);
   return point;
 }
 

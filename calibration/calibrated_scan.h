@@ -20,14 +20,13 @@ enum class PointFlag : std::uint32_t {
   DarkExtrapolated = 1U << 1U,   ///< no dark after (or before) the sample's or the reference's reading
   FewNeighbours = 1U << 2U,      ///< the slope along an angle was guessed: no other point on that line
   BorrowedReference = 1U << 3U,  ///< the reference was read for another point of the same geometry
-  UncertainDivisor =
-      1U << 4U,        ///< relative u of the reference's reading above 5 %: U by linear propagation is too small
-  Drifted = 1U << 5U,  ///< read between two visits of the standard that differ by more than the plan's limit
+  UncertainDivisor = 1U << 4U,   ///< relative u of the reference's reading, its darks and visits, above 5 %
+  Drifted = 1U << 5U,            ///< read between two visits of the standard that differ by more than the plan's limit
   InstrumentLimited = 1U << 6U,  ///< f_r bends within the cones of source and detector: a lobe about as narrow as they
   MonteCarlo = 1U << 7U,         ///< u and U by Monte Carlo (JCGM 101), for the formula does not hold
   FewRepeats = 1U << 8U,         ///< fewer than 10 effective degrees of freedom: k is Student's
   Mixed = 1U << 9U,              ///< neither spot nor field of view holds the other: by the overlap of both
-  ReferenceExtrapolated = 1U << 10U,  ///< beyond the shape table's or the certificate's last entry
+  ReferenceExtrapolated = 1U << 10U,  ///< somewhat beyond the shape table's last entry: its edge is held
   Blocked = 1U << 11U,                ///< one arm's head stands in the other's light
   Saturated = 1U << 12U,              ///< some exposures of the reading were saturated and left out
 };

@@ -34,6 +34,7 @@ enum class ComponentSource : std::uint8_t {
   Range,
   VisitNoise,
   Drift,
+  DriftRest,
   LinearityFit,
   Gain,
   Ambient,

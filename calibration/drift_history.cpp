@@ -25,9 +25,15 @@ std::map<std::int64_t, RawReading> visits_of_standard(const ScanReadings& scan) 
   return visits;
 }
 
-// Of q, relative: what one visit has for itself.
-double u_of(const NormalisedReading& visit, const InstrumentModel& instrument) {
-  double variance = visit.u_noise * visit.u_noise + visit.u_monitor * visit.u_monitor;
+// Of q, relative: what one visit has for itself, but for its darks.
+double u_own_of(const NormalisedReading& visit, const InstrumentModel& instrument) {
+  const double cosine = std::tan(visit.geometry.theta_i.si()) * instrument.angles.u_repeat.si();
+  return std::hypot(std::hypot(visit.u_noise, visit.u_monitor) / visit.q, instrument.lamp.u_reproducibility, cosine);
+}
+
+// Of q, relative.
+double u_of_darks(const NormalisedReading& visit) {
+  double variance = 0.0;
   for (const DarkShare& share : visit.darks) {
     const DarkLevel& dark = share.level;
     if (dark.before != nullptr) {
@@ -35,8 +41,7 @@ double u_of(const NormalisedReading& visit, const InstrumentModel& instrument) {
     }
     if (dark.after != nullptr) variance += std::pow(share.dq_dlevel * dark.weight_after * dark.after->u_dn, 2);
   }
-  const double cosine = std::tan(visit.geometry.theta_i.si()) * instrument.angles.u_repeat.si();
-  return std::hypot(std::sqrt(variance) / visit.q, instrument.lamp.u_reproducibility, cosine);
+  return std::sqrt(variance) / visit.q;
 }
 
 }  // namespace
@@ -49,10 +54,12 @@ DriftHistory::DriftHistory(const ScanReadings& scan, const ReadingContext& conte
     if (!visit || !(visit->q > 0.0)) continue;  // saturated, or dark: it says nothing of the response
     if (unit == 0.0) unit = visit->q;
     const double level = visit->q / unit;
+    const double u_own = level * u_own_of(*visit, instrument);
     visits_.push_back({.visit_id = id,
                        .at = reading.at,
                        .level = level,
-                       .u = level * u_of(*visit, instrument),
+                       .u = std::hypot(u_own, level * u_of_darks(*visit)),
+                       .u_own = u_own,
                        .reading = *visit,
                        .reading_id = reading.id});
   }

@@ -19,6 +19,7 @@ struct ReferenceVisit {
   Instant at{};
   double level = 1.0;           ///< q in units of the first visit's
   double u = 0.0;               ///< of the level: noise, monitor, darks, placing
+  double u_own = 0.0;           ///< likewise without the darks, which other readings rest on too
   NormalisedReading reading;    ///< all readings of the visit together
   std::int64_t reading_id = 0;  ///< RawReading::id of the first of them
 };

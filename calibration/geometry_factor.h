@@ -23,6 +23,8 @@ struct RelativeTerm {
   double per_sd = 0.0;                                                  ///< d ln f_s, signed
   double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of u
   bool is_pattern_known = true;                                         ///< as Component::is_pattern_known
+  bool is_of_the_wander = false;                                        ///< likewise
+  bool divides = false;  ///< an error of the divisor q_ref, of which f_s has -per_sd
 };
 
 /// Whose the instrument's errors are: Component::owner.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "calibration/drift_bridge.h"
+
 namespace gonio::calibration {
 namespace {
 
@@ -36,10 +38,10 @@ class DriftTerms {
     add_visit(sample.after, -sample.weight_after / sample.level);
     const bool is_same = sample.before == reference.before && sample.after == reference.after;
     if (!is_same) {
-      add_change(sample, sample.weight_after, sample.beyond);
-      add_change(reference, reference.weight_after, reference.beyond);
+      add_missed(sample, 1.0, bridge_at(sample.weight_after), sample.beyond);
+      add_missed(reference, -1.0, bridge_at(reference.weight_after), reference.beyond);
     } else {
-      add_change(sample, std::abs(sample.weight_after - reference.weight_after),
+      add_missed(sample, -1.0, bridge_between(sample.weight_after, reference.weight_after),
                  std::abs(sample.beyond - reference.beyond));
     }
   }
@@ -51,17 +53,27 @@ class DriftTerms {
                   [&] { return fmt::format("reference visit {}", visit->visit_id); });
   }
 
-  // Between two visits the straight line is wrong by wander sqrt(p (1 - p)) over the part p of the interval: as a
-  // random walk or a step at an unknown moment makes it. Beyond the visits the change may have gone on.
-  void add_change(const DriftLevel& at, double part, double beyond) {
-    const double bridge = at.wander * std::sqrt(part * (1.0 - part));
-    const double onward = std::hypot(at.change * beyond, at.wander_dof < 1e9 ? at.wander * std::sqrt(beyond) : 0.0);
+  // What the line between two visits misses (drift_bridge.h). Beyond the visits the change may have gone on.
+  void add_missed(const DriftLevel& at, double sign, const BridgeParts& bridge, double beyond) {
     const std::int64_t before = id_of(at.before);
     const std::int64_t after = id_of(at.after);
-    terms_.shared({Source::Drift, before, after}, std::max(at.change, at.wander), "1",
-                  p_.value / at.level * (at.is_between() ? bridge : onward),
-                  [&] { return fmt::format("drift between visits {} and {}", before, after); },
-                  {.degrees_of_freedom = at.wander_dof, .is_pattern_known = false});
+    const double scale = sign * p_.value / at.level;
+    if (!at.is_between()) {
+      const double onward = std::hypot(at.change * beyond, at.wander_dof < 1e9 ? at.wander * std::sqrt(beyond) : 0.0);
+      terms_.shared({Source::Drift, before, after}, std::max(at.change, at.wander), "1", p_.value / at.level * onward,
+                    [&] { return fmt::format("drift between visits {} and {}", before, after); },
+                    {.degrees_of_freedom = at.wander_dof, .is_pattern_known = false});
+      return;
+    }
+    for (std::size_t k = 0; k < kBridgeModes; ++k) {
+      terms_.shared({Source::Drift, before, after, static_cast<std::int64_t>(k) + 1}, at.wander, "1",
+                    scale * at.wander * bridge.mode[k],
+                    [&] { return fmt::format("drift between visits {} and {}, course {}", before, after, k + 1); },
+                    {.degrees_of_freedom = at.wander_dof, .is_of_the_wander = std::isfinite(at.wander_dof)});
+    }
+    if (at.wander == 0.0) return;
+    terms_.random(Source::DriftRest, "drift from reading to reading", 0.0, "sr^-1", scale * at.wander * bridge.rest,
+                  at.wander_dof);
   }
 
   const PairedPoint& p_;

@@ -120,13 +120,13 @@ double scatter_of(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
+}  // namespace
+
 double relative_divisor(const TermList& terms) {
   double squares = 0.0;
   for (const TermList::DivisorTerm& term : terms.divisor()) squares += term.relative * term.relative;
   return std::sqrt(squares);
 }
-
-}  // namespace
 
 bool needs_monte_carlo(const Budget& budget, const TermList& terms, const Nonlinearity& bent) {
   constexpr double kDivisor = 0.05;

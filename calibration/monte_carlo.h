@@ -16,6 +16,9 @@ struct Nonlinearity {
   std::array<double, kDirectionAxes> u_angle{};    ///< rad
 };
 
+/// The relative standard uncertainty of the divisor q_ref, of all terms that are marked as its errors.
+[[nodiscard]] double relative_divisor(const TermList& terms);
+
 /// Whether the formula is to be left: the divisor's relative u passes 5 %, or the second-order terms of the angles
 /// (JCGM 100:2008, 5.1.2 note: half the second derivative times u^2) pass 10 % of u. A dominant rectangular component
 /// alone does not ask for it: its k has a closed form (coverage_interval.h).

@@ -246,11 +246,41 @@ void finish(const FrameTerm& sum, double monitor2, double frames, NormalisedRead
   std::ranges::sort(out.darks, {}, &DarkShare::rung);
 }
 
+// What light acts through: of two frames of one reading the one with more saturates first.
+double reach_of(const RawFrame& frame) {
+  return frame.exposure_s * std::pow(10.0, frame.gain_db / 20.0);
+}
+
+bool is_saturated(const RawFrame& frame) {
+  return !frame.power && frame.region.saturated > 0;
+}
+
+// Without the exposures from the shortest saturated one on.
+RawReading without_saturated(const RawReading& reading) {
+  double limit = INFINITY;
+  for (const RawFrame& frame : reading.frames) {
+    if (is_saturated(frame)) limit = std::min(limit, reach_of(frame));
+  }
+  constexpr double kSame = 1.0 - 1e-9;
+  RawReading rest = reading;
+  std::erase_if(rest.frames, [&](const RawFrame& frame) { return reach_of(frame) >= kSame * limit; });
+  return rest;
+}
+
 }  // namespace
 
 Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context) {
+  if (std::ranges::any_of(reading.frames, is_saturated)) {
+    const RawReading rest = without_saturated(reading);
+    if (!rest.frames.empty()) {
+      auto shorter = normalise(rest, context);
+      if (shorter) shorter->has_saturated = true;
+      return shorter;
+    }
+  }
   GONIO_TRY(check(reading));
-  NormalisedReading out{.geometry = mean_geometry(reading.frames), .at = reading.at};
+  NormalisedReading out{
+      .has_saturated = reading.has_saturated, .geometry = mean_geometry(reading.frames), .at = reading.at};
   std::vector<FrameTerm> terms;  // of a single frame nothing is to be judged
   FrameTerm sum;
   double monitor2 = 0.0;

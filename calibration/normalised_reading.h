@@ -39,6 +39,7 @@ struct NormalisedReading {
   double mean_net_dn = 0.0;  ///< of a pixel of a frame, or as part of the range: what linearity depends on
   double frame_chi2 = 0.0;   ///< of its frames about q, by the noise model; `frame_dof` degrees of freedom
   double frame_dof = 0.0;
+  bool has_saturated = false;                           ///< exposures of it were saturated and left out
   std::vector<DarkShare> darks;                         ///< one each rung, ascending
   std::array<double, kLinearityTerms> dq_dlinearity{};  ///< of each coefficient of LinearityModel
   double dq_dambient = 0.0;                             ///< of the ambient level
@@ -48,9 +49,10 @@ struct NormalisedReading {
   Instant at{};
 };
 
-/// Errors: Saturated (a pixel of the aperture: dropping it would bias the mean); IncompleteData (no frame, no pixel, no
-/// light on the monitor, or no dark at this exposure and gain).
-/// Variance of a pixel of a frame, in DN^2: dark part + net / K (EMVA 1288 release 4.0, eq 5), K = electrons_per_dn.
+/// An exposure with a saturated pixel in the aperture is left out with all its frames and all longer ones: dropping the
+/// pixel, or that frame alone, would bias the mean. Errors: Saturated (no shorter exposure is left); IncompleteData (no
+/// frame, no pixel, no light on the monitor, or no dark at this exposure and gain). Variance of a pixel of a frame, in
+/// DN^2: dark part + net / K (EMVA 1288 release 4.0, eq 5), K = electrons_per_dn.
 [[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context);
 /// Without any background. Both must outlive the call.
 [[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,

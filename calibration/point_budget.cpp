@@ -153,8 +153,14 @@ class PointTerms {
       terms_.shared(term.key, term.u, term.unit, p_.value * term.per_sd, [&] { return term.name; },
                     {.degrees_of_freedom = term.degrees_of_freedom,
                      .owner = term.owner,
-                     .is_pattern_known = term.is_pattern_known});
+                     .is_pattern_known = term.is_pattern_known,
+                     .is_of_the_wander = term.is_of_the_wander});
+      if (term.divides && term.u != 0.0) terms_.last_shared_divides(-term.per_sd);
     }
+    if (p_.u_drift_rest == 0.0) return;
+    terms_.random(ComponentSource::DriftRest, "drift from reading to reading", 0.0, "sr^-1", p_.value * p_.u_drift_rest,
+                  p_.drift_rest_dof);
+    terms_.last_random_divides(p_.u_drift_rest);
   }
 
   // Of one zero on the ratio: what both readings have of it, cosines included, cancels at equal geometries.

@@ -90,6 +90,8 @@ Result<void> add_reference(PairedPoint& pair, const ReadingPair& readings, const
     pair.reference = std::move(found->reading);
     pair.reference_id = found->reading_id;
     pair.terms = std::move(found->terms);
+    pair.u_drift_rest = found->u_drift_rest;
+    pair.drift_rest_dof = found->drift_rest_dof;
     pair.is_anchor_drifted = found->is_large;
     return {};
   }
@@ -137,7 +139,8 @@ Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& reading
   PairedPoint pair{.mode = context.histories->mode(),
                    .sample = std::move(*sample),
                    .wavelength = point.wavelength,
-                   .polarisation = point.polarisation};
+                   .polarisation = point.polarisation,
+                   .is_blocked = point.is_blocked};
   if (pair.mode == ReferenceMode::Absolute) return by_direct_beam(std::move(pair), context);
   GONIO_TRY(add_reference(pair, readings, context));
   const double nearness = place_both(pair, *context.instrument, !context.left_out.mounting);
@@ -146,6 +149,7 @@ Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& reading
   if (!(pair.reference.q > 0.0)) {
     return failure(no_light(point, pair.reference_id, pair.reference, context.instrument->detector.power.has_value()));
   }
+  pair.is_beyond_standard = standard.is_extrapolated(pair.reference.geometry);
   pair.standard = view_of(standard, point.wavelength, pair.reference.geometry, context.left_out);
   take_geometry(pair,
                 geometry_ratio(pair.sample.geometry, pair.reference.geometry, *context.instrument, context.left_out));

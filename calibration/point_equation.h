@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct PairedPoint {
   bool reference_is_shared = false;  ///< other points use the same reading
   Wavelength wavelength;
   Polarisation polarisation = Polarisation::Any;
+  bool is_blocked = false;          ///< PlannedPoint::is_blocked
+  bool is_beyond_standard = false;  ///< ReferenceStandard::is_extrapolated
   StandardView standard;
   double geometry_ratio = 1.0;  ///< (mu_i mu_r O)_ref / (mu_i mu_r O)_s (geometry_factor.h), times what a raised
                                 ///< surface does to the distance of the source
@@ -49,8 +52,10 @@ struct PairedPoint {
   std::optional<DriftLevel> sample_drift;  ///< nothing: not corrected
   std::optional<DriftLevel> reference_drift;
   std::vector<RelativeTerm> terms;  ///< shared, of the geometries, the anchor's visits or the direct beam
-  bool is_mixed = false;            ///< neither spot nor field of view holds the other
-  bool is_anchor_drifted = false;   ///< between two visits beyond the plan's limit
+  double u_drift_rest = 0.0;        ///< relative, random: AnchorReading::u_drift_rest
+  double drift_rest_dof = std::numeric_limits<double>::infinity();
+  bool is_mixed = false;           ///< neither spot nor field of view holds the other
+  bool is_anchor_drifted = false;  ///< between two visits beyond the plan's limit
 };
 
 /// What the equation of every point of a scan has in common. What it points to must outlive it.

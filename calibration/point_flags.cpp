@@ -16,7 +16,8 @@ constexpr std::array<FlagWord, 13> kFlagWords{{
     {PointFlag::MonteCarlo, "monte-carlo", "u and U by Monte Carlo (JCGM 101), where the formula does not hold"},
     {PointFlag::FewRepeats, "few-repeats", "fewer than 10 effective degrees of freedom: k is Student's"},
     {PointFlag::Mixed, "mixed", "neither lit spot nor field of view holds the other: by the overlap of both"},
-    {PointFlag::ReferenceExtrapolated, "reference-extrapolated", "beyond the shape table or the certificate"},
+    {PointFlag::ReferenceExtrapolated, "reference-extrapolated",
+     "up to 0.1 deg beyond the shape table, whose edge is held"},
     {PointFlag::Blocked, "blocked", "one arm's head stands in the other's light"},
     {PointFlag::Saturated, "saturated", "some exposures of the reading were saturated and left out"},
 }};

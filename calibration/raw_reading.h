@@ -74,6 +74,7 @@ struct RawReading {
   Instant at{};  ///< middle of the exposures
   /// Readings are cleared of the ambient and stray light of visits in their own class of geometries.
   std::int32_t light_class = 0;
+  bool has_saturated = false;  ///< exposures of it were saturated: they are not among `frames`
   std::vector<RawFrame> frames;
 };
 
@@ -83,6 +84,7 @@ struct PlannedPoint {
   Geometry geometry;
   Wavelength wavelength;
   Polarisation polarisation = Polarisation::Any;
+  bool is_blocked = false;  ///< one arm's head stands in the other's light there
 };
 
 /// Everything of one scan that its BRDF depends on, but for the calibration itself.

@@ -76,6 +76,11 @@ Result<void> ReferenceStandard::check_reach(Wavelength wavelength, const Geometr
   return {};
 }
 
+bool ReferenceStandard::is_extrapolated(const Geometry& g) const {
+  constexpr Angle kAtTheEdge = degrees(0.01);  // what encoders scatter about a planned angle
+  return g.theta_i > last_theta_i() + kAtTheEdge || g.theta_r > last_theta_r() + kAtTheEdge;
+}
+
 Result<void> ReferenceStandard::check_shape_wavelength(Wavelength wavelength) const {
   const auto& shapes = definition_.shapes;
   const bool is_within = wavelength >= shapes.front().wavelength - kSameWavelength &&

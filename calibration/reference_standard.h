@@ -58,6 +58,9 @@ class ReferenceStandard {
   /// Whether a measurement may rest on it there. Errors: ReferenceOutOfReach (wavelength, or angles beyond the table).
   [[nodiscard]] Result<void> check_reach(Wavelength wavelength, const Geometry& g) const;
 
+  /// Whether a geometry within reach lies beyond the table's last theta all the same, where its edge is held.
+  [[nodiscard]] bool is_extrapolated(const Geometry& g) const;
+
   /// The certified reflectance, linear between the neighbouring entries, and its u (k = 1): the root sum of squares of
   /// certificate_errors. With a correlation of 1 between the entries u is linear too, and no interpolation makes it
   /// smaller.

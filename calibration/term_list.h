@@ -17,6 +17,7 @@ struct ComponentTraits {
   Distribution distribution = Distribution::Normal;
   std::string_view owner;        ///< Component::owner
   bool is_pattern_known = true;  ///< Component::is_pattern_known
+  bool is_of_the_wander = false;
 };
 
 /// The terms of one point on their way to a budget; used again for the next one. Threads: one each.
@@ -37,7 +38,12 @@ class TermList {
               double degrees_of_freedom = std::numeric_limits<double>::infinity()) {
     const std::int64_t worth = std::isinf(degrees_of_freedom) ? 0 : std::llround(degrees_of_freedom);
     const std::uint32_t index = table_.index({source, worth, 0, 0}, [&] {
-      return Component{std::string(name), ComponentKind::Random, u, std::string(unit), degrees_of_freedom};
+      return Component{.name = std::string(name),
+                       .kind = ComponentKind::Random,
+                       .u = u,
+                       .unit = std::string(unit),
+                       .degrees_of_freedom = degrees_of_freedom,
+                       .is_of_the_wander = source == ComponentSource::DriftRest && std::isfinite(degrees_of_freedom)};
     });
     random_.push_back({index, per_steradian(std::abs(per_sd))});
   }
@@ -81,7 +87,8 @@ class TermList {
                        .degrees_of_freedom = traits.degrees_of_freedom,
                        .distribution = traits.distribution,
                        .owner = std::string(traits.owner),
-                       .is_pattern_known = traits.is_pattern_known};
+                       .is_pattern_known = traits.is_pattern_known,
+                       .is_of_the_wander = traits.is_of_the_wander};
     });
   }
 

@@ -53,6 +53,7 @@ api::BrdfReport report_of(const PointInfo& info, const BrdfRow* row, const std::
   set_geometry(report, row == nullptr ? info.point.geometry : row->reported);
   if (row == nullptr) {
     report.status = status_without_value(info, mode);
+    if (info.point.blocked) report.flags = calibration::flag_name(PointFlag::Blocked);
     return report;
   }
   const StoredBudget budget = budget_of(*row);

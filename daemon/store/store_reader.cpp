@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -205,9 +206,13 @@ class SqliteStoreReader final : public StoreReader {
       all.reference_mode = static_cast<calibration::ReferenceMode>(info.policy.reference_mode);  // the same order
       if (info.policy.reference_every > Duration::zero()) all.drift_limit = info.policy.drift_limit;
       for (const ScanPoint& point : read_points(*database_, id, -1, std::numeric_limits<std::int64_t>::max())) {
-        all.points.push_back({.index = point.index, .geometry = point.geometry, .wavelength = point.wavelength});
+        all.points.push_back({.index = point.index,
+                              .geometry = point.geometry,
+                              .wavelength = point.wavelength,
+                              .is_blocked = point.blocked});
       }
       all.readings = collect_readings(id, stage, all.points);
+      if (!info.policy.exposures.empty()) mark_saturated(id, all.readings);
       return std::pair(true, std::move(all));
     });
     if (!found) return failure(found.error());
@@ -403,6 +408,18 @@ class SqliteStoreReader final : public StoreReader {
     query.bind(id);
     while (query.next()) collector.add(reading_from_row(query, stage, points, scales));
     return collector.take();
+  }
+
+  // Of exposures that the plan states some may have been saturated: their frames are kept and not used. A probe for an
+  // exposure that nobody asked for is no part of its reading.
+  void mark_saturated(ScanId id, std::vector<RawReading>& readings) {
+    std::set<std::int64_t> owners;
+    Statement& query = database_->statement(
+        "SELECT DISTINCT attempt_id FROM attempt JOIN reading USING (attempt_id) WHERE scan_id = ? AND used = 0 AND "
+        "saturated > 0");
+    query.bind(id);
+    while (query.next()) owners.insert(2 * query.integer(0));
+    for (RawReading& reading : readings) reading.has_saturated = owners.contains(reading.visit_id);
   }
 
   BrdfInfo read_brdf(ScanId id) {

@@ -83,5 +83,23 @@ TEST(WeightedSum, KeepsSharedErrorsTogetherAndRandomOnesApart) {
   EXPECT_DOUBLE_EQ(sum.u.si(), std::sqrt(9.0 + 16.0 + 16.0));  // component 2 cancels
 }
 
+// Four errors of one estimate know no more of their size than the one would.
+TEST(Budget, PartsOfOneEstimateHaveItsDegreesOfFreedomTogether) {
+  const Component whole{.name = "wander", .u = 1.0, .degrees_of_freedom = 8.0};
+  Component part = whole;
+  part.is_of_the_wander = true;
+  const std::vector<Component> one = {whole};
+  const std::vector<Component> parts(4, part);
+  std::vector<BudgetTerm> none;
+  std::vector<BudgetTerm> halves;
+  for (std::uint32_t k = 0; k < 4; ++k) halves.push_back({k, per_steradian(0.5)});
+  std::vector<BudgetTerm> once = {{0, per_steradian(1.0)}};
+
+  const Budget together = make_budget(parts, none, halves);
+
+  EXPECT_NEAR(together.degrees_of_freedom, 8.0, 1e-12);
+  EXPECT_NEAR(together.k, make_budget(one, none, once).k, 1e-12);
+}
+
 }  // namespace
 }  // namespace gonio::calibration

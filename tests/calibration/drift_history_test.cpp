@@ -51,6 +51,17 @@ CalibratedScan calibrated(const ScanReadings& scan, bool correct_drift = true) {
   return std::move(result).value();
 }
 
+// Root sum of squares of all terms of the first point whose names begin so.
+double all_of(const CalibratedScan& scan, std::string_view start) {
+  double squares = 0.0;
+  for (const auto* terms : {&scan.points.at(0).budget.random, &scan.points.at(0).budget.shared}) {
+    for (const BudgetTerm& t : *terms) {
+      if (scan.components[t.component].name.starts_with(start)) squares += t.per_sd.si() * t.per_sd.si();
+    }
+  }
+  return std::sqrt(squares);
+}
+
 double shared(const CalibratedScan& scan, std::string_view name) {
   for (const BudgetTerm& t : scan.points.at(0).budget.shared) {
     if (scan.components[t.component].name == name) return t.per_sd.si();
@@ -77,7 +88,10 @@ TEST(Drift, AllowsForAStepAtAnyMomentBetweenTheVisits) {
   const CalibratedScan scan = calibrated(drifting().scan());
 
   // Half of the interval lies between the two readings: 0.04 * sqrt(0.5 * 0.5), less what the visits' own u explains.
-  EXPECT_NEAR(shared(scan, "drift between visits 2 and 5"), kF * 0.04 * 0.5 / 0.99, kF * 1e-4);
+  EXPECT_NEAR(all_of(scan, "drift"), kF * 0.04 * 0.5 / 0.99, kF * 1e-4);
+  EXPECT_NEAR(all_of(scan, "drift between visits 2 and 5, course 2"),
+              kF * 0.04 * std::sqrt(2.0) / std::numbers::pi / 0.99, kF * 1e-4)
+      << "sin(2 pi p) at 3/4 less that at 1/4, over 2 pi";
 }
 
 TEST(Drift, FlagsAPointBetweenVisitsBeyondThePlansLimit) {

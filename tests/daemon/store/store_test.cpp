@@ -278,6 +278,29 @@ TEST_F(Store, ReadingsComeBackGroupedWithAnglesFromCountsAndWithoutProbes) {
   EXPECT_EQ(readings->readings[0].visit_id, readings->readings[1].visit_id);
 }
 
+TEST_F(Store, AReadingWhoseStatedExposuresWereSaturatedSaysSoAndAProbeIsNoPartOfIt) {
+  for (const bool is_stated : {true, false}) {
+    NewScan scan = new_scan(bench_plan({30}, {10, 20}, {90}), is_stated ? "stated" : "chosen");
+    if (is_stated) scan.policy.exposures = {std::chrono::milliseconds(1), std::chrono::milliseconds(4)};
+    const auto receipt = commit({scan});
+    ASSERT_TRUE(receipt) << describe(receipt.error());
+    NewAttempt taken = attempt(receipt->new_scan, 1);
+    taken.readings = {reading_of(4000, clock_.now()), reading_of(1000, clock_.now())};
+    taken.readings[0].used = false;
+    taken.readings[0].region.saturated = 5;
+    ASSERT_TRUE(commit({taken}));
+    ASSERT_TRUE(commit({attempt(receipt->new_scan, 0)}));
+
+    const auto readings = open_reader()->readings(receipt->new_scan, test::bench_instrument().stage);
+
+    ASSERT_TRUE(readings) << describe(readings.error());
+    ASSERT_EQ(readings->readings.size(), 2U);
+    for (const auto& reading : readings->readings) {
+      EXPECT_EQ(reading.has_saturated, is_stated && reading.point_index == 1);
+    }
+  }
+}
+
 TEST_F(Store, TheNewestBrdfComesBackWithItsSensitivities) {
   const ScanId id = accept_scan();
   const NewBrdf first{.scan = id, .code_version = "1", .inputs_json = "{}", .component_names = {"certificate"}};
@@ -310,13 +333,14 @@ TEST_F(Store, TheNewestBrdfComesBackWithItsSensitivities) {
 TEST_F(Store, ABrdfKeepsLopsidedIntervalsAndWhichComponentsHaveNoKnownSign) {
   const ScanId id = accept_scan();
   const StoredInterval lopsided{.u_per_sr = 0.011, .below_per_sr = 0.02, .above_per_sr = 0.03};
-  const NewBrdf written{.scan = id,
-                        .code_version = "1",
-                        .inputs_json = "{}",
-                        .component_names = {"certificate", "zero of theta_r", "zero of theta_r through slopes"},
-                        .rows = {BrdfRow{.point = 0, .value_per_sr = 0.31},
-                                 BrdfRow{.point = 1, .value_per_sr = 0.32, .interval = lopsided}},
-                        .sizes_only = {2}};
+  const NewBrdf written{
+      .scan = id,
+      .code_version = "1",
+      .inputs_json = "{}",
+      .component_names = {"certificate", "zero of theta_r", "zero of theta_r through slopes"},
+      .rows = {BrdfRow{.point = 0, .value_per_sr = 0.31, .sensitivities_per_sr = {0.0, 0.01}},
+               BrdfRow{.point = 1, .value_per_sr = 0.32, .sensitivities_per_sr = {0.0, 0.01}, .interval = lopsided}},
+      .sizes_only = {2}};
   ASSERT_TRUE(commit({written}));
 
   const auto brdf = open_reader()->brdf(id);
