@@ -29,6 +29,13 @@ ConeOperator operator_of(const DirectionSlopes& s, std::size_t axis, Angle theta
             .unresolved = hypot_of(2.0 * s.unresolved_curvature[axis], s.curvature[axis]),
             .noise = 2.0 * s.curvature_noise[axis]};
   }
+  if (!s.has_bend_along_phi) {  // Delta f = f_thetatheta + f_tt, t across theta: about as large as along
+    const double slope = -2.0 * sine / cosine;
+    return {.value = s.curvature[axis] + slope * s.slope[axis],
+            .unresolved = hypot_of(hypot_of(s.unresolved_curvature[axis], slope * s.unresolved[axis]),
+                                   hypot_of(s.curvature[axis], s.unresolved_curvature[axis])),
+            .noise = s.curvature_noise[axis]};
+  }
   const double along = cosine / sine - 2.0 * sine / cosine;
   const double across = 1.0 / (sine * sine);
   return {.value = s.curvature[axis] + along * s.slope[axis] + across * s.curvature[kPhi],
@@ -55,6 +62,7 @@ Angle spacing(const std::vector<Angle>& nodes, Angle at) {
 // Slopes and second derivatives of ln-free s(G) by central differences over the table's own spacing, kept within it.
 DirectionSlopes bends_of(const ReferenceStandard& standard, const Geometry& g, Wavelength wavelength) {
   DirectionSlopes s;
+  s.has_bend_along_phi = true;
   const double middle = standard.shape(g, wavelength);
   const auto fill = [&](std::size_t axis, Angle step, Angle last) {
     const auto angle = [axis](Geometry& at) -> Angle& {

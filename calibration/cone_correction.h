@@ -16,7 +16,8 @@ namespace gonio::calibration {
 ///   <f mu> / <mu> = f + kappa (Delta f - 2 tan(theta) f_theta),
 ///   Delta f = f_thetatheta + cot(theta) f_theta + f_phiphi / sin^2(theta),
 /// for the source's direction and for the detector's, their sum to this order. At the pole Delta f is twice the second
-/// derivative along one line, with as much uncertainty as that line.
+/// derivative along one line, with as much uncertainty as that line. Where no points say how f bends with phi, Delta f
+/// is f_thetatheta, and the bend across it an uncertainty of the same size.
 /// The reference has the same bias, from its shape table, and keeps its part of it in f_s:
 ///   f_s = f_measured (1 + beta_ref) - B_s.
 struct ConeCorrection {

@@ -78,6 +78,8 @@ struct Estimate {
   double first_noise2 = 0.0;
   double second = 0.0;
   double second_noise2 = 0.0;
+  double own = 0.0;  ///< the derivative of as high an order as the polynomial's
+  double own_noise2 = 0.0;
 };
 
 /// Derivatives at the first node of the polynomials through 1, 2, .. nodes; the first is a constant's.
@@ -94,6 +96,7 @@ std::array<Estimate, kNodesAtMost> estimates(const Nodes& nodes, const std::arra
   std::array<double, kNodesAtMost> second{};
   double product = 1.0;     // of -x_m, 1 <= m < p
   double derivative = 0.0;  // sum over m of the products without m
+  double factorial = 1.0;
   for (std::size_t p = 1; p < nodes.size; ++p) {
     x[p] = nodes.stop[p]->coordinate - nodes.stop[0]->coordinate;
     double own = 1.0;
@@ -102,6 +105,7 @@ std::array<Estimate, kNodesAtMost> estimates(const Nodes& nodes, const std::arra
       own *= x[p] - x[j];
     }
     divided[p] = 1.0 / own;
+    factorial *= static_cast<double>(p);
     Estimate& e = found[p];
     for (std::size_t j = 0; j <= p; ++j) {
       first[j] += product * divided[j];
@@ -110,6 +114,9 @@ std::array<Estimate, kNodesAtMost> estimates(const Nodes& nodes, const std::arra
       e.second += second[j] * y[j];
       e.first_noise2 += first[j] * first[j] * u[j] * u[j];
       e.second_noise2 += second[j] * second[j] * u[j] * u[j];
+      const double own_of_j = factorial * divided[j];
+      e.own += own_of_j * y[j];
+      e.own_noise2 += own_of_j * own_of_j * u[j] * u[j];
     }
     derivative = -x[p] * derivative + product;
     product *= -x[p];
@@ -145,7 +152,32 @@ Derivative best_of(std::size_t size, std::size_t lowest, std::size_t first, Valu
   return best;
 }
 
-void read_stop(std::span<const SlopeOrdinate> ordinates, const LineStop& own, std::size_t a, DirectionSlopes& slopes) {
+/// How a line bends on: what three points do not see.
+struct LineBend {
+  bool has_five = false;    ///< points: then both squares are known
+  double third2 = 0.0;      ///< square of the third derivative of f (f g''' of ln f), noise taken off
+  double fourth2 = 0.0;     ///< of the fourth
+  bool is_lone = false;     ///< of three points: one second derivative, and nothing to hold it against
+  double per_third = 0.0;   ///< of a lone line: what its second derivative misses for each unit of the third
+  double per_fourth = 0.0;  ///< of the fourth
+};
+using LineBends = std::array<LineBend, kDirectionAxes>;
+
+LineBend bend_of(const Nodes& nodes, const std::array<Estimate, kNodesAtMost>& e, double unit) {
+  const auto square = [&](std::size_t p) { return unit * unit * (e[p].own * e[p].own - e[p].own_noise2); };
+  LineBend bend{.has_five = nodes.size == kNodesAtMost, .is_lone = nodes.size == 3};
+  if (bend.has_five) bend.third2 = std::max(0.0, square(3));
+  if (bend.has_five) bend.fourth2 = std::max(0.0, square(4));
+  if (!bend.is_lone) return bend;
+  const double a = nodes.stop[1]->coordinate - nodes.stop[0]->coordinate;
+  const double b = nodes.stop[2]->coordinate - nodes.stop[0]->coordinate;
+  bend.per_third = std::abs(a + b) / 3.0;
+  bend.per_fourth = (a * a + a * b + b * b) / 12.0;
+  return bend;
+}
+
+void read_stop(std::span<const SlopeOrdinate> ordinates, const LineStop& own, std::size_t a, DirectionSlopes& slopes,
+               LineBend& bend_on) {
   const Nodes nodes = nodes_about(own);
   std::array<double, kNodesAtMost> y{};
   std::array<double, kNodesAtMost> u{};
@@ -170,6 +202,7 @@ void read_stop(std::span<const SlopeOrdinate> ordinates, const LineStop& own, st
   slopes.curvature[a] = unit * second.value;
   slopes.unresolved_curvature[a] = second.is_known ? unit * second.missed : -1.0;  // guessed below
   slopes.curvature_noise[a] = unit * second.noise;
+  bend_on = bend_of(nodes, e, unit);
 }
 
 // Where phi means nothing, or where the mirror plane makes the function even, its slope is 0 without any neighbour.
@@ -184,6 +217,15 @@ constexpr std::size_t kI = 0;
 constexpr std::size_t kR = 1;
 constexpr std::size_t kPhi = 2;
 
+double smaller_sine(const Geometry& g) {
+  return std::min(std::abs(std::sin(g.theta_i.si())), std::abs(std::sin(g.theta_r.si())));
+}
+
+// |sin(dphi)| of an isotropic sample: what vanishes in its mirror plane.
+double off_plane(const Geometry& g, bool isotropic) {
+  return isotropic ? std::abs(std::sin(azimuth_between(g, true).si())) : 1.0;
+}
+
 void guess_slopes(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
   const auto size = [&](std::size_t a) { return std::hypot(s.slope[a], s.unresolved[a]); };
   if (!s.has_neighbours[kI] && !s.has_neighbours[kR]) {
@@ -193,18 +235,43 @@ void guess_slopes(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
   } else if (!s.has_neighbours[kR]) {
     s.unresolved[kR] = size(kI);
   }
+  const double steepest = std::max(size(kI), size(kR));
   if (has_no_phi_slope(point.planned, isotropic)) {
     s.slope[kPhi] = s.unresolved[kPhi] = 0.0;
     s.has_neighbours[kPhi] = true;
   } else if (!s.has_neighbours[kPhi]) {
-    s.unresolved[kPhi] = std::max(size(kI), size(kR)) * std::abs(std::sin(point.reported.theta_r.si()));
+    s.unresolved[kPhi] = steepest * smaller_sine(point.reported);
   }
+  s.across_pole.fill(steepest * off_plane(point.planned, isotropic));
 }
 
-// A lobe about any direction bends alike across and along; on a circle of latitude its slope bends it too.
+// Of three points along phi: f as a function of m cos(dphi), whose derivatives are those along theta.
+double missed_along_phi(const LineBend& lone, const LineBend& like, const SlopePoint& point, bool isotropic,
+                        const DirectionSlopes& s) {
+  const double m = smaller_sine(point.reported);
+  const double first = m * std::max(std::abs(s.slope[kI]), std::abs(s.slope[kR]));
+  const double second = m * m * std::max(std::abs(s.curvature[kI]), std::abs(s.curvature[kR]));
+  const double third = m * m * m * std::sqrt(like.third2);
+  const double fourth = m * m * m * m * std::sqrt(like.fourth2);
+  const double odd = off_plane(point.reported, isotropic) * std::hypot(third, 3.0 * second, first);
+  const double even = std::hypot(std::hypot(fourth, 6.0 * third), 4.0 * second, first);
+  return std::hypot(lone.per_third * odd, lone.per_fourth * even);
+}
+
+void guess_lone_lines(const SlopePoint& point, bool isotropic, const LineBends& bends, DirectionSlopes& s) {
+  const LineBend& like = bends[kR].has_five ? bends[kR] : bends[kI];
+  if (!like.has_five) return;  // half of the derivative stands, as best_of has it
+  for (const std::size_t a : {kI, kR}) {
+    if (!bends[a].is_lone) continue;
+    s.unresolved_curvature[a] =
+        std::hypot(bends[a].per_third * std::sqrt(like.third2), bends[a].per_fourth * std::sqrt(like.fourth2));
+  }
+  if (bends[kPhi].is_lone) s.unresolved_curvature[kPhi] = missed_along_phi(bends[kPhi], like, point, isotropic, s);
+}
+
+// A lobe about any direction bends alike along both thetas.
 void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
   const auto is_known = [&](std::size_t a) { return s.unresolved_curvature[a] >= 0.0; };
-  const auto size = [&](std::size_t a) { return std::hypot(s.curvature[a], s.unresolved_curvature[a]); };
   const std::array<bool, 2> known{is_known(kI), is_known(kR)};
   if (!known[0] && !known[1]) {
     const double f = std::abs(point.value.si());
@@ -217,12 +284,10 @@ void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
     s.curvature_noise[unknown] = s.curvature_noise[other];
     s.unresolved_curvature[unknown] = std::hypot(s.unresolved_curvature[other], 0.5 * s.curvature[other]);
   }
-  const double sine = std::abs(std::sin(point.reported.theta_r.si()));
-  if (plan_key(point.planned.theta_r) == 0 || plan_key(point.planned.theta_i) == 0) {
+  const bool is_even = plan_key(point.planned.theta_r) == 0 || plan_key(point.planned.theta_i) == 0;
+  s.has_bend_along_phi = is_even || is_known(kPhi);
+  if (is_even || !s.has_bend_along_phi) {
     s.curvature[kPhi] = s.unresolved_curvature[kPhi] = s.curvature_noise[kPhi] = 0.0;
-  } else if (!is_known(kPhi)) {
-    const double slope = std::hypot(s.slope[kR], s.unresolved[kR]) * std::abs(std::cos(point.reported.theta_r.si()));
-    s.unresolved_curvature[kPhi] = sine * (sine * std::max(size(kI), size(kR)) + slope);
   }
 }
 
@@ -248,10 +313,12 @@ SlopeField::~SlopeField() = default;
 
 DirectionSlopes SlopeField::at(std::size_t n) const {
   DirectionSlopes slopes;
+  LineBends bends;
   for (std::size_t axis = 0; axis < kDirectionAxes; ++axis) {
-    read_stop(ordinates_, lines_[axis]->stop_of(n), axis, slopes);
+    read_stop(ordinates_, lines_[axis]->stop_of(n), axis, slopes, bends[axis]);
   }
   guess_slopes(points_[n], isotropic_, slopes);
+  guess_lone_lines(points_[n], isotropic_, bends, slopes);
   guess_curvatures(points_[n], slopes);
   return slopes;
 }

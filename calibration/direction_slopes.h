@@ -35,6 +35,10 @@ struct DirectionSlopes {
   std::array<double, kDirectionAxes> curvature_noise{};       ///< from the points' u_random
   std::array<bool, kDirectionAxes>
       has_neighbours{};  ///< false: no other point on this line; `slope` is 0, `unresolved` a guess
+  /// Whether any points say how f bends with phi; false: `curvature` of phi is 0 and counts for nothing.
+  bool has_bend_along_phi = false;
+  /// At the pole of theta_i or theta_r: the size of the slope across the plane of phi, along which `slope` goes.
+  std::array<double, 2> across_pole{};
 };
 
 /// A value as it is to be differentiated: ln f where it stands clear of zero, and f itself.
@@ -57,11 +61,17 @@ class DirectionLines;
 ///   misses is taken as the larger of |s_p - s_(p-1)| and |s_(p+1) - s_p|: an estimate for a smooth surface, no bound;
 /// - taken is the p with the least noise^2 + missed^2, `unresolved` is what it misses. The noise itself is part of s_p,
 ///   so the expectation of s_p^2 holds it already;
-/// - second derivatives likewise from p = 2 on, of ln f as f (g'' + g'^2);
+/// - second derivatives likewise from p = 2 on, of ln f as f (g'' + g'^2). Three points alone say nothing of what they
+///   miss: (x_1 + x_2) / 3 g''' + (x_1^2 + x_1 x_2 + x_2^2) / 12 g'''' of their places x_1, x_2 from the point. Both
+///   are taken as large as along the theta that has five points, along phi as for a function of sin(theta) cos(dphi);
+///   where no line has five points, half of the derivative stands for it;
 /// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope;
 /// - without a neighbour: |df/dtheta_i| is taken as large as |df/dtheta_r| and the other way round (equal for what
-///   depends on the phase angle or on the tilt of a facet), phi as large as the larger of them times sin(theta_r), and
-///   without any neighbour at all, |f| per radian; second derivatives likewise.
+///   depends on the phase angle or on the tilt of a facet), phi as large as the larger of them times the smaller of
+///   sin(theta_i) and sin(theta_r) (at either pole phi means nothing), and without any neighbour at all, |f| per
+///   radian; second derivatives of the thetas likewise;
+/// - across the pole f changes towards the other direction alone, of an isotropic sample: the steepest slope times
+///   |sin(dphi)|; of any other, the steepest slope.
 /// Newton's divided differences (Abramowitz and Stegun 1964, 25.2.26): each neighbour adds one term.
 /// Made in O(n log n); a point is read in O(1), from what lies about it in memory too. Immutable; threads: any.
 class SlopeField {

@@ -115,11 +115,10 @@ class SlopeEffect {
   [[nodiscard]] double theta(std::size_t axis) const { return theta_[axis]; }
 
   [[nodiscard]] Effect of(const std::array<double, kDirectionAxes>& slope,
-                          const std::array<double, kDirectionAxes>& unresolved) const {
+                          const std::array<double, kDirectionAxes>& unresolved,
+                          const std::array<double, 2>& across_pole) const {
     Effect e;
     double variance = 0.0;
-    const double steepest =
-        std::hypot(std::max(std::abs(slope[0]), std::abs(slope[1])), std::max(unresolved[0], unresolved[1]));
     double turn = 0.0;  // of phi_r - phi_i
     for (std::size_t a = 0; a < 2; ++a) {
       e.value += slope[a] * theta_[a];
@@ -127,7 +126,7 @@ class SlopeEffect {
       if (sines_[a] > kPole) {
         turn += (a == 1 ? 1.0 : -1.0) * across_[a] / sines_[a];
       } else {  // across the plane no neighbour says anything
-        variance += steepest * steepest * across_[a] * across_[a];
+        variance += across_pole[a] * across_pole[a] * across_[a] * across_[a];
       }
     }
     e.value += slope[2] * turn;
@@ -142,6 +141,14 @@ class SlopeEffect {
   std::array<double, 2> theta_;
   std::array<double, 2> across_;
 };
+
+// d ln f_ref across a pole: the standard is isotropic, and steepest towards the other direction.
+std::array<double, 2> across_pole_of(const PairedPoint& point) {
+  const auto& slope = point.standard.slope;
+  const Geometry& g = point.reference.geometry;
+  const double across = std::max(std::abs(slope[0]), std::abs(slope[1])) * std::abs(std::sin((g.phi_r - g.phi_i).si()));
+  return {across, across};
+}
 
 struct MountError {
   std::string_view name;
@@ -198,7 +205,8 @@ void add_mounting_terms(const PairedPoint& point, const DirectionSlopes& slopes,
       const SlopeEffect moved(reading.geometry, shift);
       const auto& log_slope = is_sample ? point.sample_log_slope : point.reference_log_slope;
       const double level = log_slope[0] * moved.theta(0) + log_slope[1] * moved.theta(1) + shift.log_irradiance;
-      const Effect effect = is_sample ? moved.of(slopes.slope, slopes.unresolved) : moved.of(point.standard.slope, {});
+      const Effect effect = is_sample ? moved.of(slopes.slope, slopes.unresolved, slopes.across_pole)
+                                      : moved.of(point.standard.slope, {}, across_pole_of(point));
       const double per_sd = is_sample ? effect.value + point.value * level : -point.value * (effect.value + level);
       terms.shared({ComponentSource::Mounting, number}, error.u, error.unit, per_sd,
                    [&] { return fmt::format("{} of the {}", error.name, target); }, {.owner = owner});

@@ -9,8 +9,10 @@
 #include "calibration/calibrate.h"
 #include "calibration/mounting_term.h"
 #include "calibration/polarisation_term.h"
+#include "reflectance/surface/make_surface.h"
 #include "sim/optics/cone_average.h"
 #include "sim/optics/mounting.h"
+#include "sim/optics/polarised_light.h"
 #include "tests/calibration/reference_text.h"
 #include "tests/calibration/scan_builder.h"
 
@@ -281,6 +283,59 @@ TEST(ChainTerms, FacetDiattenuationIsFresnels) {
   // Brewster's angle of 1.34 is 53.2671733355106 deg: no p light, phase angle twice that.
   EXPECT_NEAR(facet_diattenuation(directions(53.2671733355106, 53.2671733355106, 180.0), 1.34), 1.0, 1e-12);
   EXPECT_NEAR(facet_diattenuation(directions(0.0, 0.0, 0.0), 1.34), 0.0, 1e-12);
+}
+
+// The simulator's Mueller calculus is the truth: whatever the plane of the lamp, its part is what the two components
+// say.
+TEST(ChainTerms, PolarisationByFacetsTurnsWithThePlaneOfEachGeometry) {
+  constexpr double kDegree = 0.01;
+  constexpr double kIndex = 1.34;
+  const std::vector<reflectance::SurfaceTerm> glint = {
+      {.surface = reflectance::make_surface("cox_munk", {{"wind_m_per_s", 10.0}, {"refractive_index", 1.34}}).value(),
+       .weight = 1.0}};
+  for (const Geometry& g :
+       {directions(30.0, 40.0, 180.0), directions(30.0, 40.0, 120.0), directions(50.0, 20.0, 65.0)}) {
+    const double c = facet_diattenuation(g, kIndex);
+    const PlaneTurn lamp = facet_turn(g.theta_i, g.theta_r, g.phi_r - g.phi_i);
+    const PlaneTurn eye = facet_turn(g.theta_r, g.theta_i, g.phi_i - g.phi_r);
+    const auto i = reflectance::Direction::from_angles(g.theta_i, g.phi_i);
+    const auto r = reflectance::Direction::from_angles(g.theta_r, g.phi_r);
+    const double plain = glint.front().surface.eval(i, r).si();
+    for (const double psi_deg : {0.0, 25.0, 45.0, 110.0}) {
+      const double psi2 = 2.0 * degrees(psi_deg).si();
+      const sim::PolarisationSpec by_lamp{.source_degree = kDegree, .source_plane = degrees(psi_deg)};
+      const sim::PolarisationSpec by_eye{.detector_diattenuation = kDegree, .detector_plane = degrees(psi_deg)};
+      const auto seen = [&](const sim::PolarisationSpec& spec) {
+        return sim::PolarisedSample(spec, glint).seen(i, r, sim::polarisation_axes(spec, g)).si() / plain - 1.0;
+      };
+      EXPECT_NEAR(seen(by_lamp), kDegree * c * (lamp.cosine * std::cos(psi2) + lamp.sine * std::sin(psi2)), 1e-12);
+      EXPECT_NEAR(seen(by_eye), kDegree * c * (eye.cosine * std::cos(psi2) + eye.sine * std::sin(psi2)), 1e-12);
+    }
+  }
+}
+
+TEST(ChainTerms, WhatTheReadingsDoNotResolveHasASizeAndNoKnownSign) {
+  InstrumentModel model = quiet();
+  model.angles.u_zero_theta_r = degrees(0.1);
+  model.lamp.u_after_monitor = 1e-3;
+  model.cones = ConeModel{.source_half = {degrees(3.0), degrees(0.1)}, .detector_half = {degrees(2.0), Angle{}}};
+
+  const CalibratedScan scan = calibrated(grid_of(flat_white).scan(), model);
+
+  const auto is_known = [&](std::string_view start) {
+    for (const Component& c : scan.components) {
+      if (c.name.starts_with(start)) return c.is_pattern_known;
+    }
+    ADD_FAILURE() << "no " << start;
+    return false;
+  };
+  for (const char* name : {"certificate", "zero theta_r", "half angle of the source's cone"}) {
+    EXPECT_TRUE(is_known(name)) << name;
+  }
+  for (const char* name :
+       {"zero theta_r through unresolved slopes", "lamp after the monitor", "cones through unresolved curvature"}) {
+    EXPECT_FALSE(is_known(name)) << name;
+  }
 }
 
 TEST(ChainTerms, WavelengthIsTheDifferenceQuotientOverItsNeighbours) {
