@@ -26,6 +26,7 @@ Result<RepetitionOutcome> repeat(const PreparedScene& prepared, const calibratio
   calibration::CalibrationOptions how;
   how.threads = 1;
   how.left_out.overlap = left_out == Correction::Overlap;
+  how.left_out.cones = left_out == Correction::Cones;
   const auto scan = calibration::calibrate(readings, prepared.told, standard, kToday, how);
   if (!scan) return failure(scan.error());
   return outcome_of(*scan, instrument.truth(), prepared.points.size(), prepared.scene.has_lobe,

@@ -26,8 +26,6 @@ struct CoverageScene {
   std::function<void(sim::Scene&)> bend{};                ///< once, before any repetition
   std::function<void(sim::Scene&, sim::Chance&)> draw{};  ///< each repetition, beside what `sim::Truth` draws
   std::function<void(calibration::InstrumentModel&)> tell{};  ///< once, on top of `ShortScan::stated_model`
-  /// Not empty: the claim does not hold here, and why. Its test then demands that it does not.
-  std::string fails_for{};
 };
 
 /// All of them, in the order of the table.

@@ -75,9 +75,6 @@ void leave_out(Correction correction, PreparedScene& scene) {
     std::ranges::fill(scene.told.detector.linearity.coefficients, 0.0);
   }
   if (correction == Correction::Shape) flatten(scene.reference);
-  if (correction == Correction::Cones && scene.told.cones) {
-    scene.told.cones->source_half.value = scene.told.cones->detector_half.value = Angle{};
-  }
 }
 
 void leave_out(Correction correction, calibration::ScanReadings& readings) {

@@ -20,7 +20,7 @@ enum class Correction : std::uint8_t {
   Monitor,         ///< it shows its first value all the time
   Visits,          ///< there were none
   Shape,           ///< the reference is told as Lambertian
-  Cones,           ///< they are told to be narrow
+  Cones,           ///< their bias, by the option of `calibrate`
   Overlap,         ///< the factor of the geometry, by the option of `calibrate`
   Correlation,     ///< shared terms are summed as if they were random
 };
