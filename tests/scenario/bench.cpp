@@ -23,10 +23,11 @@ std::string scene_text(const SceneOptions& options) {
 }
 
 std::string plan_text(const PlanOptions& options) {
+  const std::string lists = "theta_i_deg = " + options.theta_i_deg + "\ntheta_r_deg = " + options.theta_r_deg +
+                            "\nphi_r_deg = " + options.phi_r_deg + "\n";
   std::ostringstream text;
-  text << "[scan]\nname = \"scenario\"\nsample = \"card\"\n"
-       << "[geometry]\ntheta_i_deg = " << options.theta_i_deg << "\ntheta_r_deg = " << options.theta_r_deg
-       << "\nphi_r_deg = " << options.phi_r_deg << "\nwavelength_nm = [568]\n"
+  text << "[scan]\nname = \"scenario\"\nsample = \"card\"\n[geometry]\n"
+       << (options.points.empty() ? lists : "points = \"" + options.points + "\"\n") << "wavelength_nm = [568]\n"
        << "[reading]\ntarget_snr = " << options.target_snr << "\nmax_time_s = 0.5\n"
        << (options.exposure_s.empty() ? "" : "exposure_s = " + options.exposure_s + "\n")
        << "[reference]\nstandard = \"SRT-99-020\"\nmode = \"same-geometry\"\nblock_s = " << options.block_s << "\n"

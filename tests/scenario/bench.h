@@ -35,6 +35,7 @@ struct PlanOptions {
   std::string theta_i_deg = "[0, 30]";
   std::string theta_r_deg = "[0, 30, 60]";
   std::string phi_r_deg = "[0, 90, 180]";
+  std::string points{};  ///< a file of points beside the plan, in place of the lists
   std::string strategy = "fastest";
   double target_snr = 100.0;
   int block_s = 20;  ///< and dark_s: what is due by time depends on how busy the machine is
