@@ -9,12 +9,15 @@
 
 namespace gonio::sim {
 
-/// An angular shape like that of sintered PTFE: what f_ref = rho s / pi is made of. Reciprocal, analytic:
-///   s = N [ L(mu_i) L(mu_r) + B exp(-(sin(xi/2) / w)^2) + C (sin theta_i sin theta_r)^6 sin^4(dphi/2) ],  L(mu) = 1 -
-///   c (1 - mu)^2
-/// a gentle limb darkening, a small rise towards retro-reflection, a strong one forward at grazing angles, with sizes
-/// as published for 99 % Spectralon (0/45 factor 1.01-1.02, 60/60 forward about 1.2, 70/70 forward about 1.6). N makes
-/// the integral of s mu_r dOmega_r / pi at theta_i = 8 deg equal 1. Value type; threads: any.
+/// An angular shape like that of sintered PTFE: what f_ref = rho s / pi is made of. Two lobes that scatter once, towards
+/// retro-reflection and forward at grazing angles, and a body that sends back all that they leave:
+///   F = B exp(-(sin(xi/2) / w)^2) + C (sin theta_i sin theta_r)^6 sin^4(dphi/2)
+///   s = N [ F + (1 - E(mu_i)) (1 - E(mu_r)) / (1 - E_mean) ],  E(mu) = (1/pi) int F mu_r dOmega_r,
+///   E_mean = 2 int E mu dmu
+/// (the coupling of Kelemen and Szirmay-Kalos 2001): reciprocal, and (1/pi) int s mu_r dOmega_r is 1 at every theta_i
+/// to 1e-5, so that no light comes back that was not sent. Sizes as published for 99 % Spectralon (0/45 factor
+/// 1.01-1.02, 60/60 forward about 1.2, 70/70 forward about 1.6). N makes that integral at theta_i = 8 deg equal 1.
+/// Value type; threads: any.
 class SpectralonShape {
  public:
   SpectralonShape();

@@ -15,23 +15,29 @@ Geometry at(double theta_i, double theta_r, double phi_r) {
   return {degrees(theta_i), degrees(0.0), degrees(theta_r), degrees(phi_r)};
 }
 
-// (1/pi) int s mu dOmega at theta_i = 8 deg by the midpoint rule in theta and phi: independent of the code's own
-// quadrature.
+// (1/pi) int s mu dOmega at a theta_i by the midpoint rule in theta and phi: independent of the code's own quadrature.
 template <class Shape>
-double integral_by_midpoints(const Shape& shape) {
+double integral_by_midpoints(const Shape& shape, double theta_i_deg = 8.0) {
   constexpr int kTheta = 400;
   constexpr int kPhi = 360;
   double sum = 0.0;
   for (int i = 0; i < kTheta; ++i) {
     const double theta = 90.0 * (i + 0.5) / kTheta;
     const double weight = std::sin(theta * std::numbers::pi / 180.0) * std::cos(theta * std::numbers::pi / 180.0);
-    for (int k = 0; k < kPhi; ++k) sum += weight * shape(at(8.0, theta, 360.0 * (k + 0.5) / kPhi));
+    for (int k = 0; k < kPhi; ++k) sum += weight * shape(at(theta_i_deg, theta, 360.0 * (k + 0.5) / kPhi));
   }
   return sum * (std::numbers::pi / 2.0 / kTheta) * (2.0 * std::numbers::pi / kPhi) / std::numbers::pi;
 }
 
 TEST(SpectralonShape, IntegratesToOneAtTheCertificatesAngle) {
   EXPECT_NEAR(integral_by_midpoints(SpectralonShape()), 1.0, 1e-5);
+}
+
+TEST(SpectralonShape, SendsBackAsMuchLightAsItGetsAtEveryAngle) {
+  const SpectralonShape shape;
+
+  for (const double theta_i : {0.0, 30.0, 45.0, 60.0, 70.0, 80.0, 89.0})
+    EXPECT_NEAR(integral_by_midpoints(shape, theta_i), 1.0, 3e-5) << theta_i;
 }
 
 TEST(SpectralonShape, IsReciprocal) {

@@ -21,31 +21,32 @@ struct Recorded {
 };
 
 // Recorded at revision 284bbdd, the last one without effects: 20 ms at four geometries, sample and reference in turn.
+// The reference's means and m2 were recorded again when its shape was made to keep energy, which moved nothing else.
 constexpr std::array kRecorded{
     Recorded{"wheat", 1, 0x1.46cbe6cb614e8p+11, 0x1.266ade4d1589dp+9, 0x1.fddfa730ca30cp-1},
-    Recorded{"wheat", 2, 0x1.bb78965c67f86p+11, 0x1.7bc4b5b7fd771p+9, 0x1.ff37adb18dfcep-1},
+    Recorded{"wheat", 2, 0x1.bec99ec448f87p+11, 0x1.7ea739df98dbap+9, 0x1.ff37adb18dfcep-1},
     Recorded{"wheat", 3, 0x1.b176239831326p+10, 0x1.a0c65992c6f06p+8, 0x1.ff51084ed3f61p-1},
-    Recorded{"wheat", 4, 0x1.7aff7f7e1407ap+11, 0x1.649ab5fcb415dp+9, 0x1.004a973cb4cfap+0},
+    Recorded{"wheat", 4, 0x1.76dd1adf543c1p+11, 0x1.60a4b54a4ea63p+9, 0x1.004a973cb4cfap+0},
     Recorded{"wheat", 5, 0x1.d4c13b864ef8ap+10, 0x1.a729e6e15a28p+8, 0x1.fff98d428f9d6p-1},
-    Recorded{"wheat", 6, 0x1.3b75edb340d1cp+11, 0x1.2573272a70a5bp+9, 0x1.fee314c928cc1p-1},
+    Recorded{"wheat", 6, 0x1.3dcc819784e2ap+11, 0x1.27ac5878df823p+9, 0x1.fee314c928cc1p-1},
     Recorded{"wheat", 7, 0x1.1401b6572fb6ap+10, 0x1.f8cda9569d35ap+7, 0x1.fe10949362d2fp-1},
-    Recorded{"wheat", 8, 0x1.065da2ffaf67fp+11, 0x1.dc4a107bc9ca5p+8, 0x1.fd4ba25bfbd54p-1},
+    Recorded{"wheat", 8, 0x1.02b4d22356739p+11, 0x1.d5779cd31524bp+8, 0x1.fd4ba25bfbd54p-1},
     Recorded{"glint", 1, 0x1.44e460d1974e8p+7, 0x1.8bc272b5f74abp+4, 0x1.fddfa730ca30cp-1},
-    Recorded{"glint", 2, 0x1.bb78965c67f86p+11, 0x1.7bc4b5b7fd771p+9, 0x1.ff37adb18dfcep-1},
+    Recorded{"glint", 2, 0x1.bec99ec448f87p+11, 0x1.7ea739df98dbap+9, 0x1.ff37adb18dfcep-1},
     Recorded{"glint", 3, 0x1.97bed1162ba86p+8, 0x1.5efc48d9f5902p+6, 0x1.ff51084ed3f61p-1},
-    Recorded{"glint", 4, 0x1.7aff7f7e1407ap+11, 0x1.649ab5fcb415dp+9, 0x1.004a973cb4cfap+0},
+    Recorded{"glint", 4, 0x1.76dd1adf543c1p+11, 0x1.60a4b54a4ea63p+9, 0x1.004a973cb4cfap+0},
     Recorded{"glint", 5, 0x1.0c3158921cca3p+7, 0x1.264722f191b9bp+4, 0x1.fff98d428f9d6p-1},
-    Recorded{"glint", 6, 0x1.3b75edb340d1cp+11, 0x1.2573272a70a5bp+9, 0x1.fee314c928cc1p-1},
+    Recorded{"glint", 6, 0x1.3dcc819784e2ap+11, 0x1.27ac5878df823p+9, 0x1.fee314c928cc1p-1},
     Recorded{"glint", 7, 0x1.8b79027dd5fa9p+6, 0x1.55131d68a0f8p+3, 0x1.fe10949362d2fp-1},
-    Recorded{"glint", 8, 0x1.065da2ffaf67fp+11, 0x1.dc4a107bc9ca5p+8, 0x1.fd4ba25bfbd54p-1},
+    Recorded{"glint", 8, 0x1.02b4d22356739p+11, 0x1.d5779cd31524bp+8, 0x1.fd4ba25bfbd54p-1},
     Recorded{"dark", 1, 0x1.03d2e947733e7p+6, 0x1.2c3f58f737d58p+1, 0x1.fddfa730ca30cp-1},
-    Recorded{"dark", 2, 0x1.bb78965c67f86p+11, 0x1.7bc4b5b7fd771p+9, 0x1.ff37adb18dfcep-1},
+    Recorded{"dark", 2, 0x1.bec99ec448f87p+11, 0x1.7ea739df98dbap+9, 0x1.ff37adb18dfcep-1},
     Recorded{"dark", 3, 0x1.0280425c740b6p+6, 0x1.407fe6f48451bp+1, 0x1.ff51084ed3f61p-1},
-    Recorded{"dark", 4, 0x1.7aff7f7e1407ap+11, 0x1.649ab5fcb415dp+9, 0x1.004a973cb4cfap+0},
+    Recorded{"dark", 4, 0x1.76dd1adf543c1p+11, 0x1.60a4b54a4ea63p+9, 0x1.004a973cb4cfap+0},
     Recorded{"dark", 5, 0x1.032d4152305a1p+6, 0x1.2982d105df6dbp+1, 0x1.fff98d428f9d6p-1},
-    Recorded{"dark", 6, 0x1.3b75edb340d1cp+11, 0x1.2573272a70a5bp+9, 0x1.fee314c928cc1p-1},
+    Recorded{"dark", 6, 0x1.3dcc819784e2ap+11, 0x1.27ac5878df823p+9, 0x1.fee314c928cc1p-1},
     Recorded{"dark", 7, 0x1.01c4f41231278p+6, 0x1.2ecf66ad650a2p+1, 0x1.fe10949362d2fp-1},
-    Recorded{"dark", 8, 0x1.065da2ffaf67fp+11, 0x1.dc4a107bc9ca5p+8, 0x1.fd4ba25bfbd54p-1},
+    Recorded{"dark", 8, 0x1.02b4d22356739p+11, 0x1.d5779cd31524bp+8, 0x1.fd4ba25bfbd54p-1},
 };
 
 constexpr double kGeometries[4][3] = {{0, 45, 0}, {30, 60, 180}, {45, 0, 0}, {60, 75, 120}};
