@@ -49,6 +49,11 @@ Measured<SolidAngle> detector_solid_angle(const AbsoluteModel& absolute, Length 
 
 Result<AbsoluteRatio> absolute_ratio(const Geometry& sample, Wavelength wavelength, const InstrumentModel& instrument,
                                      const LeftOut& left_out) {
+  constexpr Angle kHorizon = degrees(90.0);
+  if (sample.theta_i >= kHorizon || sample.theta_r >= kHorizon) {
+    return failure(incomplete(wavelength, "a direction below the surface, where the detector looks into the source",
+                              "both above it"));
+  }
   if (!instrument.absolute || !instrument.overlap) {
     return failure(incomplete(wavelength, instrument.absolute ? "no spot and field of view" : "no direct beam",
                               "a direct beam, a stop, and the radii of spot and field of view"));
@@ -61,7 +66,7 @@ Result<AbsoluteRatio> absolute_ratio(const Geometry& sample, Wavelength waveleng
   }
   const Length spot = instrument.overlap->spot_radius.value;
   const double omega = detector_solid_angle(absolute, spot, sample).value.si();
-  const double whole = beam->q.value / absolute.attenuation.value;
+  const double whole = beam->q.value / beam->attenuation.value;
   AbsoluteRatio ratio{.beam_net_dn = beam->mean_net_dn, .beam_dlnq_dt0 = beam->dlnq_dt0};
   const GeometryTerms geometry = absolute_geometry(sample, instrument);
   const double mu_r = std::cos(sample.theta_r.si());
@@ -72,7 +77,7 @@ Result<AbsoluteRatio> absolute_ratio(const Geometry& sample, Wavelength waveleng
   const auto add = [&](std::int64_t number, std::string name, double u, double per_sd, double dof) {
     if (u == 0.0) return;
     ratio.terms.push_back(
-        {.key = {ComponentSource::DirectBeam, number, number == 1 ? std::llround(in_nanometres(wavelength) * 1e3) : 0},
+        {.key = {ComponentSource::DirectBeam, number, number <= 2 ? std::llround(in_nanometres(wavelength) * 1e3) : 0},
          .name = std::move(name),
          .u = u,
          .unit = "1",
@@ -82,11 +87,12 @@ Result<AbsoluteRatio> absolute_ratio(const Geometry& sample, Wavelength waveleng
   };
   constexpr double kKnown = std::numeric_limits<double>::infinity();
   const double u_beam = beam->q.u / beam->q.value;
-  const double u_attenuation = absolute.attenuation.u / absolute.attenuation.value;
+  const double u_attenuation = beam->attenuation.u / beam->attenuation.value;
   const double u_radius = absolute.aperture_radius.u / absolute.aperture_radius.value;
   const double u_distance = absolute.aperture_distance.u / absolute.aperture_distance.value;
   add(1, fmt::format("direct beam at {:g} nm", in_nanometres(wavelength)), u_beam, -u_beam, beam->degrees_of_freedom);
-  add(2, "attenuator of the direct beam", u_attenuation, u_attenuation, kKnown);
+  add(2, fmt::format("attenuator of the direct beam at {:g} nm", in_nanometres(wavelength)), u_attenuation,
+      u_attenuation, kKnown);
   add(3, "radius of the detector's stop", u_radius, -2.0 * u_radius, kKnown);
   add(4, "distance of the detector's stop", u_distance, 2.0 * u_distance, kKnown);
   return ratio;

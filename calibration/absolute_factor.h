@@ -33,7 +33,7 @@ struct AbsoluteRatio {
 /// f = q_s / (q_i Omega_d) [pi a_spot^2 / (mu_i mu_r O)], q_i that of the direct beam without its attenuator: with the
 /// spot inside the field O = pi a_spot^2 / mu_i, and this is q_s / (q_i Omega_d mu_r) (Nicodemus 1977; STARR).
 /// Elsewhere it rests on both radii, and says so. Errors: IncompleteData (no absolute model, no direct beam at the
-/// wavelength, or spot and field are not stated).
+/// wavelength, spot and field are not stated, or a direction below the surface: the direct beam's own reading).
 [[nodiscard]] Result<AbsoluteRatio> absolute_ratio(const Geometry& sample, Wavelength wavelength,
                                                    const InstrumentModel& instrument, const LeftOut& left_out = {});
 

@@ -67,10 +67,11 @@ void describe(const OverlapModel& o, InputText& text) {
 }
 
 void describe(const AbsoluteModel& a, InputText& text) {
-  text.line("direct beam", {a.attenuation.value, a.attenuation.u, a.aperture_radius.value.si(),
-                            a.aperture_radius.u.si(), a.aperture_distance.value.si(), a.aperture_distance.u.si()});
+  text.line("direct beam", {a.aperture_radius.value.si(), a.aperture_radius.u.si(), a.aperture_distance.value.si(),
+                            a.aperture_distance.u.si()});
   for (const DirectBeam& b : a.beams) {
-    text.line("beam", {b.wavelength.si(), b.q.value, b.q.u, b.degrees_of_freedom, b.mean_net_dn, b.dlnq_dt0});
+    text.line("beam", {b.wavelength.si(), b.q.value, b.q.u, b.degrees_of_freedom, b.mean_net_dn, b.dlnq_dt0,
+                       b.attenuation.value, b.attenuation.u});
   }
 }
 

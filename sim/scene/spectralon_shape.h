@@ -9,8 +9,8 @@
 
 namespace gonio::sim {
 
-/// An angular shape like that of sintered PTFE: what f_ref = rho s / pi is made of. Two lobes that scatter once, towards
-/// retro-reflection and forward at grazing angles, and a body that sends back all that they leave:
+/// An angular shape like that of sintered PTFE: what f_ref = rho s / pi is made of. Two lobes that scatter once,
+/// towards retro-reflection and forward at grazing angles, and a body that sends back all that they leave:
 ///   F = B exp(-(sin(xi/2) / w)^2) + C (sin theta_i sin theta_r)^6 sin^4(dphi/2)
 ///   s = N [ F + (1 - E(mu_i)) (1 - E(mu_r)) / (1 - E_mean) ],  E(mu) = (1/pi) int F mu_r dOmega_r,
 ///   E_mean = 2 int E mu dmu

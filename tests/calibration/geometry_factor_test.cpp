@@ -189,8 +189,7 @@ TEST(GeometryRatio, LeftOutIsTheCosineWithTheBudgetUnchanged) {
 InstrumentModel with_beam(double spot_mm, double field_mm) {
   InstrumentModel model = instrument(spot_mm, field_mm);
   auto& absolute = model.absolute.emplace();
-  absolute.beams = {{.wavelength = nanometres(568.0), .q = {2.0, 0.002}}};
-  absolute.attenuation = {1e-4, 2e-7};
+  absolute.beams = {{.wavelength = nanometres(568.0), .q = {2.0, 0.002}, .attenuation = {1e-4, 2e-7}}};
   absolute.aperture_radius = {millimetres(10.0), millimetres(0.02)};
   absolute.aperture_distance = {millimetres(500.0), millimetres(0.5)};
   return model;
@@ -207,7 +206,7 @@ TEST(AbsoluteRatio, InIntensityGeometryIsNicodemusEquation) {
   EXPECT_NEAR(found->dvalue_dq * 2.0 / 1e-4 * omega * cosine(60), 1.0, 1e-3);
   EXPECT_FALSE(found->is_mixed);
   EXPECT_NEAR(term(found->terms, "direct beam at 568 nm"), -0.001, 1e-12);
-  EXPECT_NEAR(term(found->terms, "attenuator of the direct beam"), 0.002, 1e-12);
+  EXPECT_NEAR(term(found->terms, "attenuator of the direct beam at 568 nm"), 0.002, 1e-12);
   EXPECT_NEAR(term(found->terms, "radius of the detector's stop"), -0.004, 1e-12);
   EXPECT_NEAR(term(found->terms, "distance of the detector's stop"), 0.002, 1e-12);
   EXPECT_NEAR(term(found->terms, "radius of the lit spot"), 0.0, 1e-9);
@@ -232,6 +231,9 @@ TEST(AbsoluteRatio, IsRefusedWithoutWhatItRestsOn) {
   EXPECT_EQ(absolute_ratio(g, nanometres(568.0), InstrumentModel{}).error().code, ErrorCode::IncompleteData);
   EXPECT_EQ(absolute_ratio(g, nanometres(568.0), no_field).error().code, ErrorCode::IncompleteData);
   EXPECT_EQ(absolute_ratio(g, nanometres(633.0), with_beam(0.5, 40)).error().code, ErrorCode::IncompleteData);
+  EXPECT_EQ(absolute_ratio(directions(80, 100, 180), nanometres(568.0), with_beam(0.5, 40)).error().code,
+            ErrorCode::IncompleteData)
+      << "straight through there is no surface between";
 }
 
 AbsoluteModel stop(double radius_mm, double distance_mm) {

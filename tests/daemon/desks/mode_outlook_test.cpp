@@ -35,8 +35,7 @@ Instrument bench_with_beams(double spot_mm, double field_mm) {
   beams.spot_radius = {millimetres(spot_mm), millimetres(0.01 * spot_mm)};
   beams.field_radius = {millimetres(field_mm), millimetres(0.01 * field_mm)};
   auto& absolute = model.absolute.emplace();
-  absolute.beams = {{.wavelength = nanometres(568.0), .q = {1.0, 0.001}}};
-  absolute.attenuation = {1e-4, 5e-7};
+  absolute.beams = {{.wavelength = nanometres(568.0), .q = {1.0, 0.001}, .attenuation = {1e-4, 5e-7}}};
   absolute.aperture_radius = {millimetres(10.0), millimetres(0.02)};
   absolute.aperture_distance = {millimetres(500.0), millimetres(0.5)};
   return instrument;
