@@ -15,7 +15,7 @@
 namespace gonio::calibration {
 
 /// The rules of this room, as one number: grows whenever the same inputs would give other values.
-inline constexpr std::string_view kCalibrationCode = "gonio-calibration-2";
+inline constexpr std::string_view kCalibrationCode = "gonio-calibration-3";
 
 /// When budgets are made by Monte Carlo.
 enum class MonteCarloUse : std::uint8_t {
@@ -44,7 +44,8 @@ struct CalibrationOptions {
 /// u(f) by the law of propagation (JCGM 100:2008, eq 13), every term in sr^-1. Components, each only where its u is not
 /// 0:
 /// - random: noise, monitor, angle repeatability and reproducibility of sample and reference readings, noise of the
-///   cones' correction. A reference reading that serves several points becomes one shared component of theirs instead;
+///   cones' correction, the course of a drift that no sine of drift_bridge.h holds. A reference reading that serves
+///   several points becomes one shared component of theirs instead;
 /// - shared: certificate; shape modes, the shape's integral and its interpolation; zeros of the arms through
 ///   d f_s/d angle - f_s d ln f_ref/d angle (direction_slopes.h), and what those slopes leave unresolved; exposure
 ///   offset; linearity L(N_s) - L(N_ref), L = eps N / full scale, and the parts of its fit; lamp after the monitor, one
