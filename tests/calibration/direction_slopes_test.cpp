@@ -175,5 +175,50 @@ TEST(DirectionSlopes, NeverMixWavelengths) {
   EXPECT_FALSE(slopes[0].has_neighbours[kR]);
 }
 
+// A glint through three theta_i and two phi of a lobe's width of theta_r: what is said to be missed of the bends along
+// the short lines is of the size of what is missed, not of the bends themselves.
+TEST(DirectionSlopes, WhatThreePointsMissOfABendIsJudgedByTheLineThatHasFive) {
+  const auto f = [](double i, double r, double p) {
+    const double tilt2 = i * i + r * r + 2.0 * i * r * std::cos(p);
+    return 0.02 + std::exp(-tilt2 / 0.2);
+  };
+  const auto points = measured(grid({25, 30, 35}, {20, 25, 30, 35, 40, 45}, {170, 180}), f);
+
+  const auto slopes = slopes_of(points);
+
+  constexpr double kStep = 1e-4;
+  for (const std::size_t a : {kI, kPhi}) {
+    double missed2 = 0.0, unresolved2 = 0.0, bend2 = 0.0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const auto at = [&](double step) {
+        const Geometry& g = points[n].reported;
+        return f(g.theta_i.si() + (a == kI ? step : 0.0), g.theta_r.si(), g.phi_r.si() + (a == kPhi ? step : 0.0));
+      };
+      const double real = (at(kStep) - 2.0 * at(0.0) + at(-kStep)) / (kStep * kStep);
+      missed2 += std::pow(slopes[n].curvature[a] - real, 2);
+      unresolved2 += std::pow(slopes[n].unresolved_curvature[a], 2);
+      bend2 += real * real;
+    }
+    EXPECT_LE(std::sqrt(missed2), 1.2 * std::sqrt(unresolved2)) << a;
+    EXPECT_LE(std::sqrt(unresolved2), 0.2 * std::sqrt(bend2)) << a;
+  }
+}
+
+TEST(DirectionSlopes, OfABendWithoutAnyLineOfFivePointsHalfIsUnresolved) {
+  const auto f = [](double, double r, double) { return std::exp(-r * r / 0.2); };
+
+  const auto slopes = slopes_of(measured(grid({30}, {30, 35, 40}, {90}), f));
+
+  EXPECT_DOUBLE_EQ(slopes[1].unresolved_curvature[kR], 0.5 * std::abs(slopes[1].curvature[kR]));
+}
+
+TEST(DirectionSlopes, AtThePoleAnIsotropicSampleIsFlatAcrossThePlaneOfBothDirections) {
+  const auto f = [](double i, double r, double p) { return 0.2 + 0.1 * (i * std::cos(p) + r); };
+
+  const auto slopes = slopes_of(measured(grid({30}, {0, 20, 40}, {0, 180}), f));
+
+  EXPECT_NEAR(slopes[0].across_pole[1], 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace gonio::calibration
