@@ -1,7 +1,7 @@
 // Error against time of reading a scan between its readings, by number of readings and by scheme; and how long fits
 // take. Usage: bench_interpolation [--output FOLDER] Prints its tables and writes them into FOLDER (the working folder
-// otherwise), what a plot is made of as interpolation.tsv. Ends with 1 when a claim does not hold: 1e6 directions a second by the chosen scheme, a fit of 1e4
-// readings and three numbers within 1 s of processor time.
+// otherwise), what a plot is made of as interpolation.tsv. Ends with 1 when a claim does not hold: 1e6 directions a
+// second by the chosen scheme, a fit of 1e4 readings and three numbers within 1 s of processor time.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "reflectance/table/least_weight.h"
+
 namespace gonio::reflectance {
 
 IncidenceIndex::IncidenceIndex(std::span<const RowIncidence> rows, const TableOptions& options)
@@ -27,6 +29,7 @@ IncidenceIndex::IncidenceIndex(std::span<const RowIncidence> rows, const TableOp
 
 void IncidenceIndex::add(IncidenceBracket& bracket, const Ring& ring, const Direction& i, double weight) const {
   if (weight <= 0.0) return;
+  const bool counts = weight >= kLeastWeight;
   const bool is_pole = is_anisotropic_ && ring.theta <= tolerance_;
   const double off_theta = std::abs(i.theta().si() - ring.theta);
   if (ring.rows.size() == 1) {
@@ -34,7 +37,7 @@ void IncidenceIndex::add(IncidenceBracket& bracket, const Ring& ring, const Dire
     double off_phi = 0.0;
     if (is_anisotropic_ && !is_pole) {
       off_phi = i.sin_theta() * std::abs(wrapped(i.phi() - ring.rows[0].phi_i).si());
-      bracket.is_covered = bracket.is_covered && off_phi <= tolerance_;
+      bracket.is_covered = bracket.is_covered && (!counts || off_phi <= tolerance_);
     }
     bracket.distance += weight * (off_theta + off_phi);
     return;
@@ -52,7 +55,9 @@ void IncidenceIndex::add(IncidenceBracket& bracket, const Ring& ring, const Dire
   const double share = past / gap;
   bracket.add({.row = a.row, .weight = weight * (1.0 - share)});
   if (share > 0.0) bracket.add({.row = b.row, .weight = weight * share});
-  bracket.is_covered = bracket.is_covered && (share == 0.0 || gap * std::sin(ring.theta) <= widest_step_);
+  const double off_phi = std::min(past, gap - past) * std::sin(ring.theta);
+  const bool is_near = off_phi <= tolerance_ || gap * std::sin(ring.theta) <= widest_step_;
+  bracket.is_covered = bracket.is_covered && (!counts || is_near);
   bracket.distance += weight * (off_theta + i.sin_theta() * ((1.0 - share) * past + share * (gap - past)));
 }
 

@@ -9,12 +9,10 @@
 
 #include "reflectance/integral/hemisphere_integral.h"
 #include "reflectance/table/detect_feature.h"
+#include "reflectance/table/least_weight.h"
 
 namespace gonio::reflectance {
 namespace {
-
-// A row of less weight than this says nothing of whether a place was measured.
-constexpr double kCounts = 1e-3;
 
 // By +phi for a row whose azimuths are phi_r itself.
 Vector turned(const Vector& r, Angle phi) {
@@ -181,7 +179,7 @@ TabulatedSurface::Known TabulatedSurface::known_one_way(const Direction& i, cons
     known.f += weight * value.f;
     known.u += weight * value.u;
     known.distance += weight * value.distance;
-    known.is_covered = known.is_covered && (value.is_covered || weight < kCounts);
+    known.is_covered = known.is_covered && (value.is_covered || weight < kLeastWeight);
   });
   return known;
 }
@@ -192,7 +190,7 @@ bool TabulatedSurface::shares(const Direction& i, const Direction& r, std::vecto
   bool is_covered = bracket.is_covered;
   at_places(bracket, i, in_frame(i, r), [&](const TableRow& from, const Vector& place, double weight) {
     const Stencil stencil = from.stencil(place);
-    is_covered = is_covered && (weight < kCounts || from.is_covered(stencil));
+    is_covered = is_covered && (weight < kLeastWeight || from.is_covered(stencil));
     for (std::size_t k = 0; k < stencil.size; ++k) {
       for (const ReadingShare& share : from.origins(stencil.node[k])) {
         shares.push_back({.reading = share.reading, .weight = weight * stencil.weight[k] * share.weight});

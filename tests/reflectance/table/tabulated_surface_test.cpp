@@ -420,6 +420,27 @@ TEST(TabulatedSurface, WantsRingsForReadingsInOnePlane) {
   EXPECT_EQ(table_of_readings(wheat_grid({30.0}), {})->options().layout, TableLayout::Scattered);
 }
 
+// Turns of the sample 60 deg apart: between them nothing was measured, at each of them all was, though an encoder ends
+// a thousandth of a degree beside it and a hair of the next theta_i's row comes in.
+TEST(TabulatedSurface, CoversATurnOfTheSampleWhereAnEncoderEndsBesideIt) {
+  Readings readings;
+  for (const double theta_i : {20.0, 80.0}) {
+    for (double phi_i = 0.0; phi_i < 360.0; phi_i += 60.0)
+      add_grid(readings, Brushed(), direction_deg(theta_i, phi_i), {.last = 80.0});
+  }
+  const TabulatedSurface t =
+      table(readings, {.symmetry = TableSymmetry::Anisotropic, .widest_incidence_step = degrees(70.0)});
+  const TabulatedSurface strict =
+      table(readings, {.symmetry = TableSymmetry::Anisotropic, .widest_incidence_step = degrees(10.0)});
+
+  const Direction r = direction_deg(40.0, 200.0);
+  for (const double theta_i : {20.0, 20.003, 79.999}) {
+    EXPECT_TRUE(t.covers(direction_deg(theta_i, 60.003), r)) << theta_i;
+    EXPECT_TRUE(strict.covers(direction_deg(theta_i, 60.003), r)) << theta_i;
+    EXPECT_FALSE(strict.covers(direction_deg(theta_i, 75.0), r)) << theta_i;
+  }
+}
+
 // A table in half and difference angles has an incidence for each of its million values.
 TEST(TabulatedSurface, RefusesAnIncidenceForEachReadingWithoutLookingAtAllOfThem) {
   Readings readings;
