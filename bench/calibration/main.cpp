@@ -1,138 +1,169 @@
-// Reducing a scan to BRDF with budgets, from memory: seconds a million points, and the share of each step. The scan is
-// a grid of directions at one wavelength, each with its own sample and reference reading, a dark visit each thousand
-// points and a visit of the standard each two thousand. Usage: bench_calibration [POINTS [ROUNDS]]
+// Reducing a scan to BRDF with budgets: from memory, with the share of each step, and read and reduced from the store.
+// Ends with 1 when a million points take a second or more from memory, or three or more with reading them (fewer points
+// in proportion). Usage: bench_calibration [POINTS [ROUNDS [FOLDER]]]
+//   FOLDER: where the store is written, some 1.3 kB a point; /tmp otherwise
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdlib>
-#include <numbers>
+#include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/calibration/measured_time.h"
+#include "bench/calibration/scan_grid.h"
+#include "bench/calibration/stored_grid.h"
 #include "calibration/calibrate.h"
-#include "calibration/direction_slopes.h"
+#include "calibration/parallel_blocks.h"
+#include "calibration/point_equation.h"
 #include "calibration/reading_pairs.h"
 #include "calibration/scan_histories.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
 using namespace gonio;
 using namespace gonio::calibration;
+using bench::MeasuredTime;
 
-constexpr int kDarkEvery = 1000;
-constexpr int kVisitEvery = 2000;
-constexpr double kDarkDn = 64.0;
+constexpr double kLimitFromMemory_us = 1.0;  // of wall time, a point
+constexpr double kLimitFromStore_us = 3.0;
 const UtcTime kMeasuredOn{std::chrono::sys_days{std::chrono::year{2026} / 3 / 1}};
 
-double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double brdf(const Geometry& g) {
-  return 0.2 + 0.05 * std::cos(g.theta_r.si()) * std::cos(g.phi_r.si());
-}
-
-/// A scan as the store would hand it over, without noise: what is timed does not depend on it.
-class Grid {
- public:
-  explicit Grid(int points) {
-    scan_.readings.reserve(static_cast<std::size_t>(2 * points + 3 * points / kDarkEvery + 10));
-    scan_.points.reserve(static_cast<std::size_t>(points));
-    const int views = 90;
-    const int turns = 100;
-    for (int n = 0; n < points; ++n) {
-      const int i = n / (views * turns);
-      if (n % kDarkEvery == 0) add_dark();
-      const Geometry g{.theta_i = degrees(0.3 + 0.6 * i),
-                       .phi_i = {},
-                       .theta_r = degrees(0.5 + 0.85 * ((n / turns) % views)),
-                       .phi_r = degrees(1.8 * (n % turns))};
-      scan_.points.push_back({.index = n, .geometry = g, .wavelength = nanometres(568.0)});
-      if (n % kVisitEvery == 0) add(Target::Reference, scan_.points.front(), true);
-      add(Target::Sample, scan_.points.back(), false);
-      add(Target::Reference, scan_.points.back(), false);
-    }
-    add_dark();
-  }
-  [[nodiscard]] const ScanReadings& scan() const { return scan_; }
-
- private:
-  RawReading& begin(Target target) {
-    const auto number = static_cast<std::int64_t>(scan_.readings.size()) + 1;
-    now_s_ += 1.0;
-    scan_.readings.push_back({.id = number,
-                              .target = target,
-                              .point_index = {},
-                              .visited_point = {},
-                              .visit_id = number,
-                              .wavelength = nanometres(568.0),
-                              .at = Instant(seconds(now_s_)),
-                              .frames = {}});
-    return scan_.readings.back();
-  }
-  static RawFrame frame(double mean_dn, const Geometry& g) {
-    RawFrame frame;
-    frame.region = {.n = 450, .mean = mean_dn, .m2 = 20.0};
-    frame.exposure_s = 0.016;
-    frame.monitor_mean = 1.0;
-    frame.monitor_se = 1e-4;
-    frame.at_open = frame.at_close = g;
-    return frame;
-  }
-  void add_dark() { begin(Target::Dark).frames.push_back(frame(kDarkDn, {})); }
-  void add(Target target, const PlannedPoint& point, bool is_visit) {
-    const double f = target == Target::Sample ? brdf(point.geometry) : 0.99 / std::numbers::pi;
-    RawReading& reading = begin(target);
-    (is_visit ? reading.visited_point : reading.point_index) = point.index;
-    reading.frames.push_back(frame(kDarkDn + 5000.0 * f * std::cos(point.geometry.theta_i.si()), point.geometry));
-  }
-
-  ScanReadings scan_;
-  double now_s_ = 0.0;
+/// What a scan is reduced with.
+struct Inputs {
+  ReferenceStandard standard = bench::grid_standard();
+  InstrumentModel instrument = bench::grid_instrument();
 };
 
-ReferenceStandard white() {
-  std::string values;
-  for (int n = 0; n < 12 * 12 * 13; ++n) values += n == 0 ? "1.0" : ", 1.0";
-  const std::string thetas = "[0, 8, 15, 22, 30, 38, 45, 52, 60, 68, 75, 85]";
-  auto standard = ReferenceStandard::parse(
-      "[standard]\nserial = \"SRT-99\"\n[certificate]\ndate = 2025-01-01\nexpires = 2030-01-01\ngeometry = \"8/h\"\n"
-      "specular = \"included\"\ncoverage_factor = 2.0\nuncertainty_kind = \"absolute\"\n"
-      "[[certificate.entries]]\nwavelength_nm = 568.0\nreflectance = 0.99\nuncertainty = 0.005\n[shape]\ntheta_i_deg "
-      "= " +
-          thetas + "\ntheta_r_deg = " + thetas +
-          "\nphi_deg = [0, 15, 30, 45, 60, 75, 90, 105, 120, 135, 150, 165, 180]\nvalues = [" + values +
-          "]\nu_integral = 0.001\n[[shape.modes]]\nname = \"limb\"\nkind = \"limb\"\nu = 0.01\n[[shape.modes]]\nname = "
-          "\"forward\"\nkind = \"forward\"\nu = 0.005\n",
-      "white.toml");
-  if (!standard) {
-    fmt::print("{}\n", describe(standard.error()));
-    std::exit(1);
+CalibratedScan reduced(const ScanReadings& scan, const Inputs& with, int threads = 0) {
+  auto result = calibrate(scan, with.instrument, with.standard, kMeasuredOn, {.threads = threads});
+  if (result && result->points.size() == scan.points.size()) return std::move(result).value();
+  fmt::print("{}\n", result ? std::string("points without a value") : describe(result.error()));
+  std::exit(2);
+}
+
+void equate_all(const ScanReadings& scan, const Inputs& with, const std::vector<ReadingPair>& pairs,
+                const ScanHistories& histories) {
+  constexpr std::size_t kPointsAtOnce = 4096;
+  const EquationContext context{
+      .histories = &histories, .instrument = &with.instrument, .standard = &with.standard, .left_out = {}};
+  for_blocks(pairs.size() / kPointsAtOnce, 0, [&](std::size_t block) {
+    for (std::size_t n = block * kPointsAtOnce; n < (block + 1) * kPointsAtOnce; ++n) {
+      if (!equate(scan.points[n], pairs[n], context)) std::exit(2);
+    }
+  });
+}
+
+std::vector<SlopePoint> places_of(const ScanReadings& scan, const CalibratedScan& calibrated) {
+  std::vector<SlopePoint> places;
+  for (std::size_t n = 0; n < scan.points.size(); ++n) {
+    const CalibratedPoint& point = calibrated.points[n];
+    places.push_back({.planned = scan.points[n].geometry,
+                      .reported = point.geometry,
+                      .wavelength = point.wavelength,
+                      .value = point.value,
+                      .u_random = point.budget.u_random});
   }
-  return std::move(standard).value();
+  return places;
 }
 
-InstrumentModel instrument() {
-  InstrumentModel model;
-  model.detector = {.electrons_per_dn = 4.0,
-                    .read_noise_dn = 1.5,
-                    .exposure_offset_s = {.value = 0.0, .u = 1e-5},
-                    .u_linearity = 0.002};
-  model.angles = {.u_zero_theta_i = degrees(0.02),
-                  .u_zero_theta_r = degrees(0.02),
-                  .u_zero_phi_r = degrees(0.02),
-                  .u_repeat = degrees(0.01)};
-  model.lamp = {.u_after_monitor = 0.001, .u_reproducibility = 0.003};
-  return model;
+/// A step of the reduction by itself, and how often it was timed.
+struct Step {
+  std::string name;
+  std::vector<MeasuredTime> times;
+};
+
+// The steps are timed beside the whole, each alone: what they leave of it is the budget.
+void time_steps(const ScanReadings& scan, const Inputs& with, const CalibratedScan& calibrated,
+                std::vector<Step>& steps) {
+  steps.resize(4);
+  const auto add = [&](std::size_t step, const char* name, const std::function<void()>& work) {
+    steps[step].name = name;
+    steps[step].times.push_back(bench::time_of(work));
+  };
+  std::vector<ReadingPair> pairs;
+  add(0, "pairs", [&] { pairs = pair_readings(scan); });
+  add(1, "histories", [&] { const ScanHistories all(scan, with.instrument, {}); });
+  const ScanHistories histories(scan, with.instrument, {});
+  add(2, "equation", [&] { equate_all(scan, with, pairs, histories); });
+  const std::vector<SlopePoint> places = places_of(scan, calibrated);
+  add(3, "lines and slopes", [&] {
+    const SlopeField field(places, true, 0);
+    constexpr std::size_t kPointsAtOnce = 4096;
+    for_blocks(places.size() / kPointsAtOnce, 0, [&](std::size_t block) {
+      for (std::size_t n = block * kPointsAtOnce; n < (block + 1) * kPointsAtOnce; ++n) (void)field.at(n);
+    });
+  });
 }
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
+void print(const std::string& name, const MeasuredTime& time, int points, double cpu_of_all_s) {
+  fmt::print("  {:<28} {:7.3f} s  {:7.3f} s of processor, {:.2f} us a point", name, time.wall_s, time.cpu_s,
+             1e6 * time.cpu_s / points);
+  if (cpu_of_all_s > 0.0) fmt::print(", {:.0f} %", 100.0 * time.cpu_s / cpu_of_all_s);
+  fmt::print("\n");
+}
+
+bool holds(const char* what, const MeasuredTime& time, int points, double limit_us) {
+  const bool is_within = 1e6 * time.wall_s < limit_us * points;
+  if (!is_within) fmt::print("  {}: {:.2f} us a point, limit {:.2f} us\n", what, 1e6 * time.wall_s / points, limit_us);
+  return is_within;
+}
+
+bool bench_memory(const ScanReadings& scan, const Inputs& with, int rounds) {
+  std::vector<MeasuredTime> whole;
+  std::vector<MeasuredTime> single;
+  std::vector<Step> steps;
+  std::size_t terms = 0;
+  for (int round = 0; round < rounds; ++round) {
+    CalibratedScan calibrated;
+    whole.push_back(bench::time_of([&] { calibrated = reduced(scan, with); }));
+    terms = calibrated.points.front().budget.shared.size() + calibrated.points.front().budget.random.size();
+    time_steps(scan, with, calibrated, steps);
+    calibrated = {};
+    if (round == 0) single.push_back(bench::time_of([&] { (void)reduced(scan, with, 1); }));
+  }
+  const MeasuredTime all = bench::median(whole);
+  const auto points = static_cast<int>(scan.points.size());
+  fmt::print("from memory: {} points, {} terms each, {} rounds, medians\n", points, terms, rounds);
+  print("all threads", all, points, 0.0);
+  print("one thread (one round)", bench::median(single), points, 0.0);
+  MeasuredTime rest = all;
+  for (const Step& step : steps) {
+    const MeasuredTime time = bench::median(step.times);
+    rest.wall_s -= time.wall_s;
+    rest.cpu_s -= time.cpu_s;
+    print("  " + step.name, time, points, all.cpu_s);
+  }
+  print("  budget, and the rest", rest, points, all.cpu_s);
+  return holds("from memory", all, points, kLimitFromMemory_us);
+}
+
+bool bench_store(const ScanReadings& scan, const Inputs& with, int rounds, const std::filesystem::path& folder) {
+  const test::TemporaryFolder own(folder);
+  bench::StoredGrid stored;
+  const MeasuredTime writing = bench::time_of([&] { stored = bench::write_grid(scan, own / "store.sqlite"); });
+  std::vector<MeasuredTime> whole;
+  std::vector<MeasuredTime> reading;
+  for (int round = 0; round < rounds; ++round) {
+    ScanReadings read;
+    CalibratedScan calibrated;
+    whole.push_back(bench::time_of([&] {
+      reading.push_back(bench::time_of([&] { read = bench::read_grid(stored); }));
+      calibrated = reduced(read, with);
+    }));
+  }
+  const auto points = static_cast<int>(scan.points.size());
+  const MeasuredTime all = bench::median(whole);
+  const MeasuredTime reads = bench::median(reading);
+  fmt::print("from the store: {} readings, {:.0f} MB, {} rounds, medians\n", scan.readings.size(),
+             1e-6 * static_cast<double>(std::filesystem::file_size(stored.file)), rounds);
+  print("read and reduced", all, points, 0.0);
+  print("  reading", reads, points, all.cpu_s);
+  print("  reducing", {all.wall_s - reads.wall_s, all.cpu_s - reads.cpu_s}, points, all.cpu_s);
+  print("writing it (once, apart)", writing, points, 0.0);
+  return holds("from the store", all, points, kLimitFromStore_us);
 }
 
 }  // namespace
@@ -140,50 +171,10 @@ double median(std::vector<double> values) {
 int main(int argc, char** argv) {
   const int points = argc > 1 ? std::atoi(argv[1]) : 1'000'000;
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
-  const Grid grid(points);
-  const ReferenceStandard standard = white();
-  const InstrumentModel model = instrument();
-  std::vector<double> whole;
-  std::vector<double> single;
-  std::vector<double> pairs;
-  std::vector<double> histories;
-  std::vector<double> slopes;
-  std::size_t terms = 0;
-  for (int round = 0; round < rounds; ++round) {
-    pairs.push_back(seconds_of([&] { (void)pair_readings(grid.scan()); }));
-    histories.push_back(seconds_of([&] { const ScanHistories all(grid.scan(), model, {}); }));
-    CalibratedScan scan;
-    whole.push_back(seconds_of([&] {
-      auto result = calibrate(grid.scan(), model, standard, kMeasuredOn);
-      if (result) scan = std::move(result).value();
-    }));
-    if (scan.points.size() != static_cast<std::size_t>(points)) return 1;
-    terms = scan.points.front().budget.shared.size() + scan.points.front().budget.random.size();
-    std::vector<SlopePoint> places;
-    for (const CalibratedPoint& point : scan.points) {
-      const auto n = static_cast<std::size_t>(point.point_index);
-      places.push_back({.planned = grid.scan().points[n].geometry,
-                        .reported = point.geometry,
-                        .wavelength = point.wavelength,
-                        .value = point.value,
-                        .u_random = point.budget.u_random});
-    }
-    slopes.push_back(seconds_of([&] { const SlopeField field(places, true, 0); }));
-    scan = {};
-    if (round == 0) {
-      single.push_back(seconds_of([&] { (void)calibrate(grid.scan(), model, standard, kMeasuredOn, {.threads = 1}); }));
-    }
-  }
-  const double all = median(whole);
-  fmt::print("bench_calibration: {} points, {} terms each, {} rounds, medians\n", points, terms, rounds);
-  fmt::print("  whole, all threads   {:.3f} s  {:.2f} us a point\n", all, 1e6 * all / points);
-  fmt::print("  whole, one thread    {:.3f} s (one round)\n", median(single));
-  const auto share = [&](const char* name, double s) {
-    fmt::print("  {:<20} {:.3f} s  {:.0f} %\n", name, s, 100.0 * s / all);
-  };
-  share("pairs", median(pairs));
-  share("histories", median(histories));
-  share("slopes", median(slopes));
-  share("equation and budget", all - median(pairs) - median(histories) - median(slopes));
-  return 0;
+  const std::filesystem::path folder = argc > 3 ? argv[3] : "/tmp";
+  const ScanReadings scan = bench::scan_grid(points);
+  const Inputs with;
+  const bool from_memory = bench_memory(scan, with, rounds);
+  const bool from_store = bench_store(scan, with, rounds, folder);
+  return from_memory && from_store ? 0 : 1;
 }

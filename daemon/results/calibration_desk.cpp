@@ -49,8 +49,6 @@ std::string inputs_json(const ScanTexts& texts, const std::string& inputs) {
 }  // namespace
 
 Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan, const AskedVersions& asked) {
-  const Result<ScanInfo> info = reader.scan(scan);
-  if (!info) return failure(info.error());
   const Result<ScanTexts> texts = reader.texts(scan);
   if (!texts) return failure(texts.error());
   const Result<Instrument> instrument = parse_instrument(texts->instrument, "the scan's instrument.toml");
@@ -63,7 +61,7 @@ Result<NewBrdf> compute_brdf(StoreReader& reader, ScanId scan, const AskedVersio
   if (!found) return failure(found.error());
   const Result<ModelOfVersions> chosen = model_with(*found, asked, *instrument, *readings);
   if (!chosen) return failure(chosen.error());
-  const auto calibrated = calibration::calibrate(*readings, chosen->model, *standard, info->submitted);
+  const auto calibrated = calibration::calibrate(*readings, chosen->model, *standard, texts->submitted);
   if (!calibrated) return failure(calibrated.error());
   NewBrdf brdf{.scan = scan,
                .code_version = std::string(calibration::kCalibrationCode),

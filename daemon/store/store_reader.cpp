@@ -4,26 +4,19 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <tuple>
 #include <utility>
 
 #include "daemon/store/database.h"
 #include "daemon/store/found_calibrations.h"
 #include "daemon/store/past_scans.h"
+#include "daemon/store/scan_readings.h"
 #include "daemon/store/schema.h"
 #include "daemon/store/unfinished_scans.h"
 #include "daemon/store/version_list.h"
-#include "drivers/kinematics/kinematics.h"
 
 namespace gonio::daemon {
 
 namespace {
-
-using calibration::RawFrame;
-using calibration::RawReading;
-using calibration::Target;
-using stage::Axis;
 
 Error no_such_scan(ScanId id) {
   return Error{.code = ErrorCode::NotFound,
@@ -36,114 +29,10 @@ UtcTime utc_from(std::int64_t ns) {
   return UtcTime(Duration(ns));
 }
 
-// What one reading row is, before rows are put together.
-struct ReadingRow {
-  std::int64_t owner = 0;  // RawReading::visit_id
-  bool is_visit = false;
-  Target target = Target::Dark;
-  std::optional<std::int32_t> point;
-  double wavelength_nm = 0.0;
-  std::int64_t id = 0;
-  Instant at{};
-  RawFrame frame;
-};
-
-// Where the point is known, the azimuths are given near its own; a dark's directions mean nothing.
-Geometry geometry_from_counts(const Statement& row, int first, const drivers::StageConfig& stage,
-                              const Geometry* planned) {
-  stage::PerAxis<double> positions{};
-  for (const Axis axis : stage::kAllAxes) {
-    const std::size_t a = stage::index_of(axis);
-    positions[a] = drivers::position_of(stage, axis, row.integer(first + static_cast<int>(a)));
-  }
-  if (planned == nullptr) return drivers::directions(stage.kinematics, positions);
-  return drivers::directions_near(stage.kinematics, positions, *planned);
-}
-
-calibration::PowerReading power_from_row(const Statement& row, int first) {
-  return {.mean_w = row.real(first),
-          .standard_error_w = row.real(first + 1),
-          .samples = static_cast<int>(row.integer(first + 2)),
-          .averages = static_cast<int>(row.integer(first + 3)),
-          .range_w = row.real(first + 4),
-          .wavelength = nanometres(row.real(first + 5))};
-}
-
-// Columns as in the query of `readings`.
-ReadingRow reading_from_row(const Statement& row, const drivers::StageConfig& stage,
-                            const std::vector<calibration::PlannedPoint>& points,
-                            const std::map<std::int64_t, std::int64_t>& scale_of_run) {
-  ReadingRow reading;
-  const bool is_visit = row.is_null(1);
-  reading.owner = is_visit ? 2 * row.integer(2) + 1 : 2 * row.integer(1);
-  reading.is_visit = is_visit;
-  const bool is_dark = row.is_null(3);
-  reading.target = is_dark ? Target::Dark : target_from_name(row.text(3)).value_or(Target::Sample);
-  if (!is_dark) reading.point = static_cast<std::int32_t>(row.integer(4));
-  if (!is_dark) reading.wavelength_nm = row.real(5);
-  reading.id = row.integer(0);
-  const auto scale = scale_of_run.find(row.integer(6));
-  reading.at = Instant(Duration(row.integer(7) + (scale == scale_of_run.end() ? 0 : scale->second)));
-  reading.frame.region = {.n = static_cast<std::uint32_t>(row.integer(8)),
-                          .mean = row.real(9),
-                          .m2 = row.real(10),
-                          .m3 = row.real(11),
-                          .m4 = row.real(12),
-                          .saturated = static_cast<std::uint32_t>(row.integer(13))};
-  reading.frame.exposure_s = in_seconds(Duration(row.integer(14)));
-  reading.frame.gain_db = row.real(15);
-  reading.frame.monitor_mean = row.real(16);
-  reading.frame.monitor_se = row.real(17);
-  reading.frame.detector_temperature_c = row.real(18);
-  const Geometry* planned = is_dark ? nullptr : &points.at(static_cast<std::size_t>(*reading.point)).geometry;
-  reading.frame.at_open = geometry_from_counts(row, 19, stage, planned);
-  reading.frame.at_close = geometry_from_counts(row, 25, stage, planned);
-  if (!row.is_null(31)) {
-    reading.frame.reduced = calibration::ReducedMean{.n = static_cast<std::uint32_t>(row.integer(31)),
-                                                     .mean_dn = row.real(32),
-                                                     .u_noise_dn = row.real(33),
-                                                     .u_maps_dn = row.real(34)};
-  }
-  if (!row.is_null(35)) reading.frame.power = power_from_row(row, 35);
-  return reading;
-}
-
-// Frames of one attempt or visit at one exposure, or in one range, become one reading; its time is the mean of theirs.
-class ReadingCollector {
- public:
-  void add(const ReadingRow& row) {
-    const Key key{row.owner, row.frame.exposure_s, row.frame.power ? row.frame.power->range_w : 0.0};
-    auto [place, is_new] = place_.try_emplace(key, readings_.size());
-    if (is_new) {
-      readings_.push_back(RawReading{.id = row.id,
-                                     .target = row.target,
-                                     .point_index = row.is_visit ? std::nullopt : row.point,
-                                     .visited_point = row.is_visit ? row.point : std::nullopt,
-                                     .visit_id = row.owner,
-                                     .wavelength = nanometres(row.wavelength_nm),
-                                     .at = row.at});
-    }
-    RawReading& reading = readings_[place->second];
-    reading.frames.push_back(row.frame);
-    const auto n = static_cast<std::int64_t>(reading.frames.size());
-    reading.at += (row.at - reading.at) / n;
-  }
-
-  std::vector<RawReading> take() {
-    std::stable_sort(readings_.begin(), readings_.end(),
-                     [](const RawReading& a, const RawReading& b) { return a.at < b.at; });
-    return std::move(readings_);
-  }
-
- private:
-  using Key = std::tuple<std::int64_t, double, double>;
-  std::map<Key, std::size_t> place_;
-  std::vector<RawReading> readings_;
-};
-
 class SqliteStoreReader final : public StoreReader {
  public:
-  explicit SqliteStoreReader(std::unique_ptr<Database> database) : database_(std::move(database)) {}
+  SqliteStoreReader(std::unique_ptr<Database> database, std::string path)
+      : database_(std::move(database)), path_(std::move(path)) {}
 
   Result<std::vector<ScanInfo>> scans(ScanId before, int at_most) override {
     return look([&] {
@@ -168,7 +57,8 @@ class SqliteStoreReader final : public StoreReader {
     std::optional<ScanTexts> texts;
     Statement& query = database_
                            ->statement(
-                               "SELECT plan_text, plan_file, r.text, i.text, plan_sha256, r.sha256, i.sha256 FROM scan "
+                               "SELECT plan_text, plan_file, r.text, i.text, plan_sha256, r.sha256, i.sha256, "
+                               "submitted_utc_ns FROM scan "
                                "JOIN reference_standard r USING (reference_id) JOIN instrument i USING (instrument_id) "
                                "WHERE scan_id = ?")
                            .bind(id);
@@ -179,7 +69,8 @@ class SqliteStoreReader final : public StoreReader {
                         .instrument = query.text(3),
                         .plan_sha256 = query.text(4),
                         .reference_sha256 = query.text(5),
-                        .instrument_sha256 = query.text(6)};
+                        .instrument_sha256 = query.text(6),
+                        .submitted = utc_from(query.integer(7))};
     }
     Statement& parts = database_->statement("SELECT name, text FROM plan_part WHERE scan_id = ?").bind(id);
     while (texts && parts.next()) texts->plan_parts.emplace(parts.text(0), parts.text(1));
@@ -198,26 +89,11 @@ class SqliteStoreReader final : public StoreReader {
   }
 
   Result<calibration::ScanReadings> readings(ScanId id, const drivers::StageConfig& stage) override {
-    auto found = look([&] {
-      calibration::ScanReadings all;
-      const ScanInfo info = read_scan(id);
-      if (info.id == 0) return std::pair(false, std::move(all));
-      all.isotropic = info.isotropic;
-      all.reference_mode = static_cast<calibration::ReferenceMode>(info.policy.reference_mode);  // the same order
-      if (info.policy.reference_every > Duration::zero()) all.drift_limit = info.policy.drift_limit;
-      for (const ScanPoint& point : read_points(*database_, id, -1, std::numeric_limits<std::int64_t>::max())) {
-        all.points.push_back({.index = point.index,
-                              .geometry = point.geometry,
-                              .wavelength = point.wavelength,
-                              .is_blocked = point.blocked});
-      }
-      all.readings = collect_readings(id, stage, all.points);
-      if (!info.policy.exposures.empty()) mark_saturated(id, all.readings);
-      return std::pair(true, std::move(all));
-    });
+    auto found = look([&] { return read_scan_readings(*database_, path_, id, stage); });
     if (!found) return failure(found.error());
-    if (!found->first) return failure(no_such_scan(id));
-    return std::move(found->second);
+    if (!*found) return failure((*found).error());
+    if (!**found) return failure(no_such_scan(id));
+    return std::move(***found);
   }
 
   Result<std::vector<EventRecord>> events(std::int64_t after, int at_most, ScanId scan) override {
@@ -368,60 +244,6 @@ class SqliteStoreReader final : public StoreReader {
     }
   }
 
-  // One scale for readings of several boots: boot time within each, and UTC at each boot's first run between them.
-  std::map<std::int64_t, std::int64_t> time_scales() {
-    std::map<std::int64_t, std::int64_t> scale_of_run;
-    std::map<std::string, std::int64_t> scale_of_boot;
-    Statement& runs =
-        database_->statement("SELECT run_id, boot_id, started_utc_ns - started_boottime_ns FROM run ORDER BY 1");
-    while (runs.next()) {
-      scale_of_run[runs.integer(0)] = scale_of_boot.try_emplace(runs.text(1), runs.integer(2)).first->second;
-    }
-    return scale_of_run;
-  }
-
-  std::vector<RawReading> collect_readings(ScanId id, const drivers::StageConfig& stage,
-                                           const std::vector<calibration::PlannedPoint>& points) {
-    const auto scales = time_scales();
-    ReadingCollector collector;
-    // Sorted by row: the order of the commits, and within one the order of the exposures.
-    Statement& query = database_->statement(
-        "SELECT reading_id, attempt_id, visit_id, target, point_index, wavelength_nm, run_id, t, region_n, mean_dn, "
-        "m2_dn2, "
-        "m3_dn3, m4_dn4, saturated, exposure_ns, gain_db, monitor_mean, monitor_se, detector_temperature_c, "
-        "open_theta_i_counts, open_theta_r_counts, open_phi_r_counts, open_phi_i_counts, open_carriage_counts, "
-        "open_filter_wheel_counts, close_theta_i_counts, close_theta_r_counts, close_phi_r_counts, close_phi_i_counts, "
-        "close_carriage_counts, close_filter_wheel_counts, counted_n, reduced_dn, u_noise_dn, u_maps_dn, mean_w, "
-        "standard_error_w, samples, averages, range_w, set_to_nm FROM ("
-        "SELECT d.*, d.boottime_ns AS t, a.run_id, a.target, a.point_index, p.wavelength_nm FROM (SELECT attempt_id, "
-        "round, max(round) OVER (PARTITION BY point_index, target) AS last_round FROM item WHERE scan_id = ?1 AND "
-        "outcome = 'accepted') i "
-        "JOIN attempt a USING (attempt_id) JOIN reading d USING (attempt_id) "
-        "JOIN point p ON p.scan_id = a.scan_id AND p.point_index = a.point_index WHERE i.round = i.last_round "
-        "UNION ALL SELECT d.*, d.boottime_ns, v.run_id, l.target, l.point_index, p.wavelength_nm FROM visit v "
-        "LEFT JOIN visit_level l USING (visit_id) LEFT JOIN point p ON p.scan_id = l.scan_id AND p.point_index = "
-        "l.point_index JOIN reading d USING (visit_id) WHERE v.scan_id = ?1) LEFT JOIN frame_reduction USING "
-        "(reading_id) "
-        "LEFT JOIN (SELECT reading_id AS of_reading, mean_w, "
-        "standard_error_w, samples, averages, range_w, wavelength_nm AS set_to_nm FROM power_reading WHERE role = "
-        "'detector') ON of_reading = reading_id WHERE used = 1 ORDER BY reading_id");
-    query.bind(id);
-    while (query.next()) collector.add(reading_from_row(query, stage, points, scales));
-    return collector.take();
-  }
-
-  // Of exposures that the plan states some may have been saturated: their frames are kept and not used. A probe for an
-  // exposure that nobody asked for is no part of its reading.
-  void mark_saturated(ScanId id, std::vector<RawReading>& readings) {
-    std::set<std::int64_t> owners;
-    Statement& query = database_->statement(
-        "SELECT DISTINCT attempt_id FROM attempt JOIN reading USING (attempt_id) WHERE scan_id = ? AND used = 0 AND "
-        "saturated > 0");
-    query.bind(id);
-    while (query.next()) owners.insert(2 * query.integer(0));
-    for (RawReading& reading : readings) reading.has_saturated = owners.contains(reading.visit_id);
-  }
-
   BrdfInfo read_brdf(ScanId id) {
     BrdfInfo info;
     Statement& newest = database_->statement(
@@ -476,6 +298,7 @@ class SqliteStoreReader final : public StoreReader {
   }
 
   std::unique_ptr<Database> database_;
+  std::string path_;
 };
 
 }  // namespace
@@ -484,7 +307,7 @@ Result<std::unique_ptr<StoreReader>> StoreReader::open(const std::string& path) 
   auto database = Database::open(path, Database::Mode::Read);
   if (!database) return failure(database.error());
   GONIO_TRY(check_version(**database));
-  return std::make_unique<SqliteStoreReader>(std::move(*database));
+  return std::make_unique<SqliteStoreReader>(std::move(*database), path);
 }
 
 }  // namespace gonio::daemon

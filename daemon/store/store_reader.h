@@ -61,6 +61,7 @@ struct ScanTexts {
   std::string plan_sha256;  ///< hex
   std::string reference_sha256;
   std::string instrument_sha256;
+  UtcTime submitted{};  ///< the day on which its certificate must hold
 };
 
 /// A point with what became of it.
