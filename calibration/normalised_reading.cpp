@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "calibration/root_sum.h"
+
 namespace gonio::calibration {
 namespace {
 
@@ -179,7 +181,7 @@ FrameTerm term_of(const RawFrame& frame, const DarkLevel& dark, const ReadingCon
                       .left_out = context.left_out,
                       .dark_dn = context.left_out.dark ? 0.0 : dark.level_dn,
                       .monitor = monitor,
-                      .u_monitor = std::hypot(frame.monitor_se, detector.u_monitor_window * monitor)};
+                      .u_monitor = root_sum(frame.monitor_se, detector.u_monitor_window * monitor)};
   return frame.power ? power_term(with) : camera_term(with, dark);
 }
 

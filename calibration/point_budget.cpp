@@ -14,6 +14,7 @@
 #include "calibration/history_terms.h"
 #include "calibration/mounting_term.h"
 #include "calibration/polarisation_term.h"
+#include "calibration/root_sum.h"
 
 namespace gonio::calibration {
 namespace {
@@ -262,7 +263,7 @@ class PointTerms {
                     [] { return "stray light of the source"; }, {.owner = rules_.instrument_owner_});
     }
     const double brightness = std::numbers::pi * p_.standard.rho.value * p_.standard.shape / std::numbers::pi;
-    const double both = std::hypot(stray.internal_share.value, stray.internal_share.u);
+    const double both = root_sum(stray.internal_share.value, stray.internal_share.u);
     const bool has_standard = p_.mode != ReferenceMode::Absolute;
     const double reference = has_standard ? p_.value * p_.standard.rho.value / brightness : 0.0;
     terms_.shared({ComponentSource::InternalStray}, both, "of the light that leaves the target",
@@ -279,8 +280,8 @@ class PointTerms {
 };
 
 Brdf scatter(const PairedPoint& p, const InstrumentModel& instrument) {
-  const double sample = p.dvalue_dq * std::hypot(p.sample.u_noise, p.sample.u_monitor);
-  const double reference = p.value * std::hypot(p.reference.u_noise, p.reference.u_monitor) / p.reference.q;
+  const double sample = p.dvalue_dq * root_sum(p.sample.u_noise, p.sample.u_monitor);
+  const double reference = p.value * root_sum(p.reference.u_noise, p.reference.u_monitor) / p.reference.q;
   const double placing = p.value * instrument.lamp.u_reproducibility;
   const double placings = p.mode == ReferenceMode::SameGeometry ? 2.0 : 1.0;  // of an anchor it does not scatter
   return per_steradian(std::sqrt(sample * sample + reference * reference + placings * placing * placing));
@@ -316,7 +317,7 @@ Nonlinearity BudgetRules::nonlinearity(const PairedPoint& point, const Direction
   for (std::size_t a = 0; a < kDirectionAxes; ++a) {
     bent.slope[a] = slopes.slope[a] - point.value * point.standard.slope[a];
     bent.curvature[a] = slopes.curvature[a];
-    bent.u_angle[a] = std::hypot(u_zero_[a], std::sqrt(moves_of(a)) * instrument_.angles.u_repeat.si());
+    bent.u_angle[a] = root_sum(u_zero_[a], std::sqrt(moves_of(a)) * instrument_.angles.u_repeat.si());
   }
   return bent;
 }

@@ -10,19 +10,6 @@
 namespace gonio::calibration {
 namespace {
 
-struct Bracket {
-  std::size_t below = 0;
-  double fraction = 0.0;  ///< of the way from `below` to the next node, in [0, 1]
-};
-
-Bracket bracket(const std::vector<Angle>& grid, Angle x) {
-  if (x <= grid.front()) return {0, 0.0};
-  std::size_t k = 0;
-  while (k + 2 < grid.size() && x > grid[k + 1]) ++k;
-  const double fraction = (x - grid[k]) / (grid[k + 1] - grid[k]);
-  return {k, fraction < 1.0 ? fraction : 1.0};
-}
-
 double between(double a, double b, double fraction) {
   return a + fraction * (b - a);
 }
@@ -31,11 +18,52 @@ constexpr Angle kHalfTurn = radians(std::numbers::pi);
 
 }  // namespace
 
+ShapeTable::NodeFinder::NodeFinder(const std::vector<Angle>& grid)
+    : first_(grid.front()), bins_per_radian_(kBins / (grid.back() - grid.front()).si()) {
+  for (std::size_t bin = 0; bin < below_.size(); ++bin) {
+    const Angle low = first_ + radians(static_cast<double>(bin) / bins_per_radian_);
+    std::size_t k = 0;
+    while (k + 2 < grid.size() && low > grid[k + 1]) ++k;
+    below_[bin] = k;
+  }
+}
+
+ShapeTable::Bracket ShapeTable::NodeFinder::bracket(const std::vector<Angle>& grid, Angle x) const {
+  if (!(x > grid.front())) return {0, 0.0};
+  const auto bin = static_cast<std::size_t>(std::min((x - first_).si() * bins_per_radian_, kBins - 1.0));
+  std::size_t k = below_[bin];
+  while (k > 0 && x <= grid[k]) --k;  // a bin's own edge is rounded
+  while (k + 2 < grid.size() && x > grid[k + 1]) ++k;
+  const double fraction = (x - grid[k]) / (grid[k + 1] - grid[k]);
+  return {k, fraction < 1.0 ? fraction : 1.0};
+}
+
 ShapeTable::ShapeTable(std::vector<Angle> theta_i, std::vector<Angle> theta_r, std::vector<Angle> phi,
                        std::vector<double> values)
     : theta_i_(std::move(theta_i)), theta_r_(std::move(theta_r)), phi_(std::move(phi)), values_(std::move(values)) {
   assert(theta_i_.size() >= 2 && theta_r_.size() >= 2 && phi_.size() >= 2);
   assert(values_.size() == theta_i_.size() * theta_r_.size() * phi_.size());
+  steps_ = {theta_r_.size() * phi_.size(), phi_.size(), 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    finders_[axis] = NodeFinder(grid(axis));
+    bends_[axis] = bends_along(axis);
+  }
+}
+
+// At each node, from it and its two neighbours (divided differences); 0 at the first and the last.
+std::vector<double> ShapeTable::bends_along(std::size_t axis) const {
+  const std::vector<Angle>& nodes = grid(axis);
+  const std::size_t step = steps_[axis];
+  std::vector<double> bends(values_.size(), 0.0);
+  for (std::size_t n = 0; n < values_.size(); ++n) {
+    const std::size_t k = n / step % nodes.size();
+    if (k == 0 || k + 1 == nodes.size()) continue;
+    const double left = (nodes[k] - nodes[k - 1]).si();
+    const double right = (nodes[k + 1] - nodes[k]).si();
+    const double rise = (values_[n + step] - values_[n]) / right - (values_[n] - values_[n - step]) / left;
+    bends[n] = 2.0 * rise / (left + right);
+  }
+  return bends;
 }
 
 ShapeTable::Place ShapeTable::place_of(const Geometry& g) {
@@ -48,45 +76,39 @@ ShapeTable::Place ShapeTable::place_of(const Geometry& g) {
           dphi < Angle{} ? -dphi : dphi};
 }
 
-double ShapeTable::value(const Geometry& g) const {
-  return at(place_of(g));
+ShapeTable::Cell ShapeTable::cell_of(const Place& place) const {
+  Cell cell;
+  for (std::size_t axis = 0; axis < place.size(); ++axis) cell[axis] = finders_[axis].bracket(grid(axis), place[axis]);
+  return cell;
 }
 
-double ShapeTable::at(const Place& place) const {
-  const Bracket i = bracket(theta_i_, place[0]);
-  const Bracket r = bracket(theta_r_, place[1]);
-  const Bracket p = bracket(phi_, place[2]);
-  const auto along_phi = [&](std::size_t ki, std::size_t kr) {
-    const std::size_t n = (ki * theta_r_.size() + kr) * phi_.size() + p.below;
-    return between(values_[n], values_[n + 1], p.fraction);
+// Linear in the two other axes, at one node of this one.
+double ShapeTable::across(const std::vector<double>& table, const Cell& cell, std::size_t axis,
+                          std::size_t node) const {
+  const std::size_t slow = axis == 0 ? 1 : 0;
+  const std::size_t fast = axis == 2 ? 1 : 2;
+  const std::size_t n = node * steps_[axis] + cell[slow].below * steps_[slow] + cell[fast].below * steps_[fast];
+  const auto along_fast = [&](std::size_t from) {
+    return between(table[from], table[from + steps_[fast]], cell[fast].fraction);
   };
-  const auto along_view = [&](std::size_t ki) {
-    return between(along_phi(ki, r.below), along_phi(ki, r.below + 1), r.fraction);
-  };
-  return between(along_view(i.below), along_view(i.below + 1), i.fraction);
+  return between(along_fast(n), along_fast(n + steps_[slow]), cell[slow].fraction);
+}
+
+double ShapeTable::value(const Geometry& g) const {
+  const Cell cell = cell_of(place_of(g));
+  const Bracket& i = cell[0];
+  return between(across(values_, cell, 0, i.below), across(values_, cell, 0, i.below + 1), i.fraction);
 }
 
 double ShapeTable::interpolation_error(const Geometry& g) const {
-  const Place place = place_of(g);
+  const Cell cell = cell_of(place_of(g));
   double error = 0.0;
-  for (std::size_t axis = 0; axis < place.size(); ++axis) {
-    const std::vector<Angle>& nodes = grid(axis);
-    const Bracket b = bracket(nodes, place[axis]);
-    const auto value_at = [&](std::size_t node) {
-      Place moved = place;
-      moved[axis] = nodes[node];
-      return at(moved);
-    };
-    // The second derivative about node k, from it and its two neighbours (divided differences).
-    const auto curvature = [&](std::size_t k) {
-      if (k == 0 || k + 1 >= nodes.size()) return 0.0;
-      const double left = (nodes[k] - nodes[k - 1]).si();
-      const double right = (nodes[k + 1] - nodes[k]).si();
-      const double rise = (value_at(k + 1) - value_at(k)) / right - (value_at(k) - value_at(k - 1)) / left;
-      return 2.0 * std::abs(rise) / (left + right);
-    };
-    const double h = (nodes[b.below + 1] - nodes[b.below]).si();
-    error += 0.5 * b.fraction * (1.0 - b.fraction) * h * h * std::max(curvature(b.below), curvature(b.below + 1));
+  for (std::size_t axis = 0; axis < cell.size(); ++axis) {
+    const Bracket& b = cell[axis];
+    const double h = (grid(axis)[b.below + 1] - grid(axis)[b.below]).si();
+    const double bend = std::max(std::abs(across(bends_[axis], cell, axis, b.below)),
+                                 std::abs(across(bends_[axis], cell, axis, b.below + 1)));
+    error += 0.5 * b.fraction * (1.0 - b.fraction) * h * h * bend;
   }
   return error;
 }

@@ -34,8 +34,30 @@ class ShapeTable {
  private:
   /// theta_i, theta_r and dphi, folded.
   using Place = std::array<Angle, 3>;
+  struct Bracket {
+    std::size_t below = 0;
+    double fraction = 0.0;  ///< of the way from `below` to the next node, in [0, 1]
+  };
+  using Cell = std::array<Bracket, 3>;
+  /// Where to begin looking for a node, by even bins.
+  class NodeFinder {
+   public:
+    NodeFinder() = default;
+    explicit NodeFinder(const std::vector<Angle>& grid);
+    [[nodiscard]] Bracket bracket(const std::vector<Angle>& grid, Angle x) const;
+
+   private:
+    static constexpr double kBins = 64;
+    Angle first_;
+    double bins_per_radian_ = 0.0;
+    std::array<std::size_t, static_cast<std::size_t>(kBins)> below_{};
+  };
+
   [[nodiscard]] static Place place_of(const Geometry& g);
-  [[nodiscard]] double at(const Place& place) const;
+  [[nodiscard]] Cell cell_of(const Place& place) const;
+  [[nodiscard]] double across(const std::vector<double>& table, const Cell& cell, std::size_t axis,
+                              std::size_t node) const;
+  [[nodiscard]] std::vector<double> bends_along(std::size_t axis) const;
   [[nodiscard]] const std::vector<Angle>& grid(std::size_t axis) const {
     return axis == 0 ? theta_i_ : axis == 1 ? theta_r_ : phi_;
   }
@@ -44,6 +66,9 @@ class ShapeTable {
   std::vector<Angle> theta_r_;
   std::vector<Angle> phi_;
   std::vector<double> values_;
+  std::array<std::size_t, 3> steps_{};  ///< from one node of an axis to the next, in `values_`
+  std::array<NodeFinder, 3> finders_;
+  std::array<std::vector<double>, 3> bends_;  ///< second derivatives along each axis, as `values_`
 };
 
 }  // namespace gonio::calibration
