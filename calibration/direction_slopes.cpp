@@ -6,6 +6,7 @@
 
 #include "calibration/direction_lines.h"
 #include "calibration/parallel_blocks.h"
+#include "calibration/root_sum.h"
 
 namespace gonio::calibration {
 namespace {
@@ -227,7 +228,7 @@ double off_plane(const Geometry& g, bool isotropic) {
 }
 
 void guess_slopes(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
-  const auto size = [&](std::size_t a) { return std::hypot(s.slope[a], s.unresolved[a]); };
+  const auto size = [&](std::size_t a) { return root_sum(s.slope[a], s.unresolved[a]); };
   if (!s.has_neighbours[kI] && !s.has_neighbours[kR]) {
     s.unresolved[kI] = s.unresolved[kR] = std::abs(point.value.si());
   } else if (!s.has_neighbours[kI]) {
