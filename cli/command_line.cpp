@@ -228,6 +228,9 @@ class CommandLine {
     fit.add_option("--model", wanted_.model, "rpv, 'lambertian + ggx'; several with commas between");
     fit.add_option("-o,--file", wanted_.result, "what the results' names begin with");
     add_comparisons(data);
+    CLI::App& readings = scan_leaf(data, "readings", "every raw reading with its lamp, temperatures, humidity, as CSV",
+                                   Verb::DataReadings);
+    readings.add_option("-o,--file", wanted_.result, "where to (scan-N-readings.csv)");
     scan_leaf(data, "describe", "reflectances, and how far readings are from their neighbours", Verb::DataDescribe);
     add_data_files(data, formats);
     leaf(data, "jobs", "what the worker program did and does", Verb::DataJobs);

@@ -42,6 +42,7 @@ enum class Verb : std::uint8_t {
   DataCompare,
   DataSymmetry,
   DataRepeatability,
+  DataReadings,
   DataPlot,
   DataReport,
   DataDescribe,

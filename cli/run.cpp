@@ -122,6 +122,8 @@ class Runner {
         return take_job_of_either("symmetry");
       case Verb::DataRepeatability:
         return take_job({.kind = "repeatability", .scan = wanted_.scan, .others = wanted_.others}, wanted_.result);
+      case Verb::DataReadings:
+        return take_job({.kind = "readings", .scan = wanted_.scan}, wanted_.result);
       case Verb::DataReport:
         return take_job({.kind = "report", .scan = wanted_.scan}, wanted_.result);
       case Verb::DataDescribe:

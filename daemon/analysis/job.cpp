@@ -14,7 +14,7 @@ struct JobKind {
   bool needs_store;
   Result<api::AnalysisReport> (*run)(const JobInput&, Progress&);
 };
-constexpr std::array<JobKind, 10> kJobs{{{"export", false, run_export},
+constexpr std::array<JobKind, 11> kJobs{{{"export", false, run_export},
                                          {"describe", false, run_describe},
                                          {"plot", false, run_plot},
                                          {"report", true, run_report},
@@ -23,7 +23,8 @@ constexpr std::array<JobKind, 10> kJobs{{{"export", false, run_export},
                                          {"fit", false, run_fit},
                                          {"compare", false, run_compare},
                                          {"symmetry", false, run_symmetry},
-                                         {"repeatability", true, run_repeatability}}};
+                                         {"repeatability", true, run_repeatability},
+                                         {"readings", true, run_readings}}};
 static_assert(kJobs.size() == api::kAnalysisKinds.size());
 
 Error no_such_kind(const JobInput& input) {

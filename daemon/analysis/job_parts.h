@@ -27,6 +27,7 @@ namespace gonio::analysis {
 [[nodiscard]] Result<api::AnalysisReport> run_plot(const JobInput& input, Progress& progress);
 [[nodiscard]] Result<api::AnalysisReport> run_report(const JobInput& input, Progress& progress);
 [[nodiscard]] Result<api::AnalysisReport> run_trace(const JobInput& input, Progress& progress);
+[[nodiscard]] Result<api::AnalysisReport> run_readings(const JobInput& input, Progress& progress);
 [[nodiscard]] Result<api::AnalysisReport> run_quantities(const JobInput& input, Progress& progress);
 [[nodiscard]] Result<api::AnalysisReport> run_fit(const JobInput& input, Progress& progress);
 [[nodiscard]] Result<api::AnalysisReport> run_symmetry(const JobInput& input, Progress& progress);

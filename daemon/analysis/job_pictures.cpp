@@ -1,5 +1,7 @@
 // Pictures, and the page that a lab signs.
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "base/read_file.h"
 #include "base/write_file.h"
@@ -9,6 +11,7 @@
 #include "daemon/analysis/job_parts.h"
 #include "daemon/analysis/plots.h"
 #include "daemon/analysis/report.h"
+#include "daemon/desks/scan_review.h"
 
 namespace gonio::analysis {
 
@@ -61,6 +64,46 @@ Result<std::vector<api::AnalysisFact>> facts_for_page(const Subject& subject, st
   return facts;
 }
 
+Result<api::ScanChecksReport> checks_for_page(const JobInput& input) {
+  const auto reader = daemon::StoreReader::open(input.store_file);
+  if (!reader) return failure(reader.error());
+  return daemon::checks_of(**reader, input.request.scan);
+}
+
+// The best of the usual models for each channel. What cannot be fitted is said in the notes.
+Told fits_for_page(const Subject& subject, const std::string& stem) {
+  Told all;
+  for (std::size_t channel = 0; channel < subject.brdf.channels.size(); ++channel) {
+    const auto scan = channel_of(subject, channel);
+    Result<Told> told = failure(scan ? Error{} : scan.error());
+    if (scan) told = fit_told(*scan, "", stem + "-fit" + channel_tail(subject.brdf, channel));
+    if (!told) {
+      all.notes.push_back("no fit: " + describe(told.error()));
+      continue;
+    }
+    for (api::AnalysisFact fact : told->facts) {
+      fact.name += channel_mark(subject.brdf, channel);
+      all.facts.push_back(std::move(fact));
+    }
+    all.notes.insert(all.notes.end(), told->notes.begin(), told->notes.end());
+    for (Picture picture : told->pictures) {
+      picture.name += channel_tail(subject.brdf, channel);
+      all.pictures.push_back(std::move(picture));
+    }
+  }
+  return all;
+}
+
+// Lobe, map, cut; budget and course; at last what the fits leave.
+std::vector<Picture> pictures_for_page(const Subject& subject, const daemon::ScanHistory& history,
+                                       const std::string& stem, std::vector<Picture> of_fits) {
+  std::vector<std::string> said_already;  // by describe_brdf
+  std::vector<Picture> pictures = pictures_of(subject.brdf, stem, said_already);
+  std::ranges::move(pictures_of_scan(*subject.scan, history, stem), std::back_inserter(pictures));
+  std::ranges::move(of_fits, std::back_inserter(pictures));
+  return pictures;
+}
+
 }  // namespace
 
 Result<std::vector<api::AnalysisFile>> draw_all(const JobInput& input, const std::vector<Picture>& pictures,
@@ -104,30 +147,33 @@ Result<AnalysisReport> run_report(const JobInput& input, Progress& progress) {
   const Result<daemon::ScanHistory> history = daemon::scan_history(input.store_file, input.request.scan);
   if (!history) return failure(history.error());
   progress.step(0.1, "integrating, and asking neighbours of each reading");
-  std::vector<std::string> notes = subject->notes;
-  Result<std::vector<api::AnalysisFact>> facts = facts_for_page(*subject, notes);
+  ReportParts parts{.scan = *subject->scan,
+                    .brdf = subject->brdf,
+                    .history = *history,
+                    .budget = budget_summary(subject->scan->brdf),
+                    .notes = subject->notes,
+                    .made_utc = iso8601(SystemClock().utc_now())};
+  Result<std::vector<api::AnalysisFact>> facts = facts_for_page(*subject, parts.notes);
   if (!facts) return failure(facts.error());
-  std::vector<std::string> said_already;  // by describe_brdf
-  std::vector<Picture> pictures = pictures_of(subject->brdf, input.name, said_already);
-  for (Picture& picture : pictures_of_scan(*subject->scan, *history, input.name)) {
-    pictures.push_back(std::move(picture));
-  }
-  Result<std::vector<ReportPicture>> drawn = drawn_for_page(input, pictures, progress);
+  parts.facts = std::move(*facts);
+  const Result<api::ScanChecksReport> checks = checks_for_page(input);
+  if (!checks) return failure(checks.error());
+  parts.checks = *checks;
+  progress.step(0.2, "fitting");
+  Told fits = fits_for_page(*subject, input.name);
+  parts.fit = std::move(fits.facts);
+  parts.fit_notes = std::move(fits.notes);
+  Result<std::vector<ReportPicture>> drawn =
+      drawn_for_page(input, pictures_for_page(*subject, *history, input.name, std::move(fits.pictures)), progress);
   if (!drawn) return failure(drawn.error());
+  parts.pictures = std::move(*drawn);
   progress.step(0.95, "writing the page");
-  const std::string page = report_page({.scan = *subject->scan,
-                                        .brdf = subject->brdf,
-                                        .history = *history,
-                                        .budget = budget_summary(subject->scan->brdf),
-                                        .facts = std::move(*facts),
-                                        .pictures = std::move(*drawn),
-                                        .notes = notes,
-                                        .made_utc = iso8601(SystemClock().utc_now())});
+  const std::string page = report_page(parts);
   const std::string name = input.name + "-report.html";
   GONIO_TRY(write_file(input.folder + "/" + name, page));
   AnalysisReport report;
   report.files = {{.name = name, .bytes = std::ssize(page)}};
-  report.notes = notes;
+  report.notes = parts.notes;
   return report;
 }
 

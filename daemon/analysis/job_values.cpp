@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include "base/write_file.h"
+#include "daemon/analysis/budget_summary.h"
 #include "daemon/analysis/describe.h"
+#include "daemon/analysis/environment.h"
 #include "daemon/analysis/export_job.h"
 #include "daemon/analysis/job_parts.h"
 #include "daemon/analysis/trace.h"
@@ -11,6 +13,21 @@
 namespace gonio::analysis {
 
 using api::AnalysisReport;
+
+namespace {
+
+// The lines of the report's budget.
+void add_budget(std::vector<api::AnalysisFact>& facts, const StoredScan& scan) {
+  constexpr double kPercent = 100.0;
+  for (const BudgetLine& line : budget_summary(scan.brdf)) {
+    facts.push_back({.name = "u of " + line.name + ", median",
+                     .value = kPercent * line.median,
+                     .unit = "%",
+                     .note = fmt::format("worst {:.6g} %", kPercent * line.worst)});
+  }
+}
+
+}  // namespace
 
 Result<AnalysisReport> run_export(const JobInput& input, Progress& progress) {
   progress.step(0.0, "reading the values");
@@ -39,6 +56,7 @@ Result<AnalysisReport> run_describe(const JobInput& input, Progress& progress) {
   Result<std::vector<api::AnalysisFact>> facts = describe_brdf(subject->brdf, report.notes);
   if (!facts) return failure(facts.error());
   report.facts = std::move(*facts);
+  if (subject->scan) add_budget(report.facts, *subject->scan);
   return report;
 }
 
@@ -60,6 +78,19 @@ Result<AnalysisReport> run_trace(const JobInput& input, Progress& progress) {
   const std::string name = fmt::format("{}-point-{}.txt", input.name, point);
   GONIO_TRY(write_file(input.folder + "/" + name, *text));
   report.files = {{.name = name, .bytes = std::ssize(*text)}};
+  return report;
+}
+
+Result<AnalysisReport> run_readings(const JobInput& input, Progress& progress) {
+  progress.step(0.0, "reading the readings");
+  const Result<daemon::ScanHistory> history = daemon::scan_history(input.store_file, input.request.scan);
+  if (!history) return failure(history.error());
+  const std::string name = input.name + "-readings.csv";
+  const std::string table = readings_table(history->readings);
+  GONIO_TRY(write_file(input.folder + "/" + name, table));
+  AnalysisReport report;
+  report.facts = environment_facts(history->readings);
+  report.files = {{.name = name, .bytes = std::ssize(table)}};
   return report;
 }
 

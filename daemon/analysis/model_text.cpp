@@ -69,7 +69,7 @@ Result<SurfaceTerm> term_of(const std::vector<std::string_view>& words) {
 
 std::string text_of_model(const Surface& surface) {
   std::string text(surface.model());
-  for (const reflectance::NamedNumber& p : surface.parameters()) text += fmt::format(" {}={}", p.name, p.value);
+  for (const reflectance::NamedNumber& p : surface.parameters()) text += fmt::format(" {}={:.8g}", p.name, p.value);
   return text;
 }
 

@@ -14,7 +14,7 @@ namespace gonio::analysis {
 /// Errors: InvalidInput naming the word; those of make_surface and SurfaceSum.
 [[nodiscard]] Result<reflectance::Surface> surface_of_text(std::string_view text);
 
-/// The same the other way; of surfaces without numbers the model's name alone.
+/// The same the other way, to eight digits; of surfaces without numbers the model's name alone.
 [[nodiscard]] std::string text_of_surface(const reflectance::Surface& surface);
 
 }  // namespace gonio::analysis

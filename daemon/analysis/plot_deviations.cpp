@@ -48,9 +48,10 @@ Picture deviations_picture(const DeviationsView& view) {
   picture.height_px = 480;
   const std::string name = fmt::format("{}-{}.dat", view.stem, view.name);
   picture.tables.emplace_back(name, deviations_table(view));
-  const std::string bounds = view.is_in_u ? "set for [s = -1:1:2] arrow from graph 0, first 2*s to graph 1, first 2*s "
-                                            "nohead dt 2 lc rgb '#d62728'\n"
-                                          : "";
+  const std::string bounds =
+      view.is_in_u ? "set yrange [*<-3:3<*]; set for [s = -1:1:2] arrow from graph 0, first 2*s to graph 1, first 2*s "
+                     "nohead dt 2 lc rgb '#d62728'\n"
+                   : "";
   picture.script = fmt::format(
       "set multiplot layout 1,2 title {0} font ',15'\nset grid lc rgb '#dddddd'; unset key\n"
       "set xlabel 'phase angle ξ [°]'; set ylabel {1}\n{2}{3}"
@@ -58,7 +59,8 @@ Picture deviations_picture(const DeviationsView& view) {
       "unset arrow; set size ratio -1; set xrange [-92:92]; set yrange [-92:92]\n"
       "set xlabel 'θᵣ cos(φᵣ - φᵢ) [°], source at the right'; set ylabel 'θᵣ sin(φᵣ - φᵢ) [°]'\n"
       "set cblabel {1}; set cbrange [{5}]\n{6}"
-      "plot {4} using 2:3:5 with points pt 7 ps 0.9 lc palette\nunset multiplot\n",
+      "plot {4} using 2:3 with points pt 7 ps 1.1 lc rgb '#888888', {4} using 2:3:5 with points pt 7 ps 0.9 lc "
+      "palette\nunset multiplot\n",
       in_quotes(view.title), in_quotes(view.label), kTwoSided, bounds, in_quotes(name), view.is_in_u ? "-4:4" : "*:*",
       marked_directions(view));
   return picture;

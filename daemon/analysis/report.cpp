@@ -47,8 +47,8 @@ std::string report_page(const ReportParts& parts) {
                       daemon::scan_state_name(parts.scan.info.state), parts.made_utc);
   for (const std::string& note : parts.notes) html += "<p class=\"note\">" + html_text(note) + "</p>\n";
   html += summary_section(parts) + sample_section(parts) + chain_section(parts) + budget_section(parts) +
-          checks_section(parts) + environment_section(parts) + values_section(parts) + gaps_section(parts) +
-          people_section(parts) + origins_section(parts) + pictures_section(parts);
+          checks_section(parts) + fit_section(parts) + environment_section(parts) + values_section(parts) +
+          gaps_section(parts) + people_section(parts) + origins_section(parts) + pictures_section(parts);
   html += "<div class=\"sign\"><div>measured by, date</div><div>checked by, date</div></div>\n";
   return html + "</body></html>\n";
 }

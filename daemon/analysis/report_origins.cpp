@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "calibration/reference_standard.h"
+#include "daemon/analysis/environment.h"
 #include "daemon/analysis/html.h"
 #include "daemon/analysis/report.h"
 #include "daemon/config/instrument.h"
@@ -13,7 +14,6 @@ namespace gonio::analysis {
 namespace {
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
-using daemon::HistoryReading;
 
 constexpr std::size_t kStepsShown = 80;
 
@@ -51,12 +51,6 @@ void add_certificate(Facts& facts, const ReportParts& parts) {
   }
 }
 
-template <class Value>
-std::string range_text(const std::vector<HistoryReading>& readings, Value value, const char* unit) {
-  const auto [least, most] = std::ranges::minmax_element(readings, {}, value);
-  return fmt::format("{:.4g} to {:.4g} {}", value(*least), value(*most), unit);
-}
-
 }  // namespace
 
 std::string sample_section(const ReportParts& parts) {
@@ -85,7 +79,11 @@ std::string sample_section(const ReportParts& parts) {
          "θ "
          "from the normal, φ counter-clockwise seen from above. Retro-reflection: θ<sub>r</sub> = θ<sub>i</sub>, "
          "φ<sub>r</sub> = φ<sub>i</sub>.</p>\n" +
-         html_facts(facts) + "<pre>" + html_text(parts.scan.texts.plan) + "</pre>\n";
+         html_facts(facts) + "<pre>" + html_text(parts.scan.texts.plan) + "</pre>\n" +
+         fmt::format(
+             "<p>The plan again: <code>gonioctl scan show {0} -o json</code>; its points: <code>gonioctl data "
+             "export {0}</code></p>\n",
+             info.id);
 }
 
 std::string chain_section(const ReportParts& parts) {
@@ -102,26 +100,22 @@ std::string chain_section(const ReportParts& parts) {
   facts.emplace_back("its inputs", code(parts.scan.brdf.inputs_json));
   facts.emplace_back("measurand",
                      "f<sub>r</sub> at the reported directions and the wavelength's centroid, at zero aperture");
-  return "<h2>Calibration chain</h2>\n" + html_facts(facts);
+  return "<h2>Calibration chain</h2>\n" + html_facts(facts) +
+         fmt::format("<p><code>gonioctl reference show {}</code>, <code>gonioctl instrument</code></p>\n",
+                     html_text(parts.scan.info.reference_serial));
 }
 
 std::string environment_section(const ReportParts& parts) {
-  const std::vector<HistoryReading>& readings = parts.history.readings;
-  if (readings.empty()) return "<h2>Environment</h2>\n<p>No reading.</p>\n";
-  const Facts facts{
-      {"lamp", range_text(
-                   readings, [](const HistoryReading& r) { return r.lamp_temperature_c; }, "°C")},
-      {"detector", range_text(
-                       readings, [](const HistoryReading& r) { return r.detector_temperature_c; }, "°C")},
-      {"room", range_text(
-                   readings, [](const HistoryReading& r) { return r.room_temperature_c; }, "°C")},
-      {"humidity", range_text(
-                       readings, [](const HistoryReading& r) { return r.humidity_percent; }, "%")},
-      {"lamp monitor", range_text(
-                           readings, [](const HistoryReading& r) { return r.monitor_mean; }, "(its own unit)")},
-      {"readings",
-       fmt::format("{}, {} to {}", readings.size(), iso8601(readings.front().at), iso8601(readings.back().at))}};
-  return "<h2>Environment</h2>\n" + html_facts(facts);
+  if (parts.history.readings.empty()) return "<h2>Environment</h2>\n<p>No reading.</p>\n";
+  Facts facts;
+  for (const api::AnalysisFact& fact : environment_facts(parts.history.readings)) {
+    facts.emplace_back(html_text(fact.name),
+                       fact_value(fact) + (fact.note.empty() ? "" : " (" + html_text(fact.note) + ")"));
+  }
+  facts.emplace_back("first and last",
+                     iso8601(parts.history.readings.front().at) + " to " + iso8601(parts.history.readings.back().at));
+  return "<h2>Environment</h2>\n" + html_facts(facts) +
+         fmt::format("<p>Every raw reading: <code>gonioctl data readings {}</code></p>\n", parts.scan.info.id);
 }
 
 std::string people_section(const ReportParts& parts) {

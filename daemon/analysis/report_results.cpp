@@ -26,16 +26,6 @@ std::string percent(double fraction) {
   return fmt::format("{:.3g} %", 100.0 * fraction);
 }
 
-std::string trace_command(const StoredScan& scan, std::int32_t point) {
-  return fmt::format("<code>gonioctl data trace {} {}</code>", scan.info.id, point);
-}
-
-std::string fact_value(const api::AnalysisFact& fact) {
-  std::string text = fmt::format("{:.6g}", fact.value);
-  if (fact.expanded_u) text += fmt::format(" ± {:.2g}", *fact.expanded_u);
-  return fact.unit == "1" ? text : text + " " + html_text(fact.unit);
-}
-
 // Why a point has no value.
 std::string gap_reason(const PointInfo& info, api::ReferenceMode mode) {
   if (info.point.blocked) return "in the detector's shadow";
@@ -82,6 +72,16 @@ std::vector<std::string> value_row(const ReportParts& parts, const BrdfRow& row,
 
 }  // namespace
 
+std::string trace_command(const StoredScan& scan, std::int64_t point) {
+  return fmt::format("<code>gonioctl data trace {} {}</code>", scan.info.id, point);
+}
+
+std::string fact_value(const api::AnalysisFact& fact) {
+  std::string text = fmt::format("{:.6g}", fact.value);
+  if (fact.expanded_u) text += fmt::format(" ± {:.2g}", *fact.expanded_u);
+  return fact.unit == "1" ? text : text + " " + html_text(fact.unit);
+}
+
 std::string summary_section(const ReportParts& parts) {
   const daemon::ScanInfo& info = parts.scan.info;
   const daemon::RelativeUncertainty u = daemon::relative_uncertainty(parts.scan.brdf);
@@ -100,8 +100,10 @@ std::string summary_section(const ReportParts& parts) {
   }
   return "<h2>Result</h2>\n" + html_facts(facts) +
          fmt::format(
-             "<p>Counts: <code>gonioctl scan show {0}</code>. All values: <code>gonioctl data export {0}</code>. "
-             "Integrals: <code>gonioctl data quantities {0}</code>. Each value down to its raw readings: "
+             "<p>Counts: <code>gonioctl scan show {0} -o json</code>. All values: <code>gonioctl data export "
+             "{0}</code>. "
+             "Integrals: <code>gonioctl data quantities {0}</code>, <code>gonioctl data describe {0}</code>. Each "
+             "value down to its raw readings: "
              "<code>gonioctl data trace {0} POINT</code>.</p>\n",
              info.id);
 }
@@ -117,34 +119,8 @@ std::string budget_section(const ReportParts& parts) {
          "told "
          "from zero. Components that all points share are correlated between them.</p>\n" +
          html_table({"component", "median", "worst"}, rows, 1) +
-         "<p>Of the most uncertain point: " + trace_command(parts.scan, worst.point) + "</p>\n";
-}
-
-std::string checks_section(const ReportParts& parts) {
-  std::map<std::string, std::size_t> flags;
-  for (const BrdfRow& row : parts.scan.brdf.rows) {
-    for (std::size_t bit = 0; bit < parts.brdf.flag_names.size(); ++bit) {
-      if ((row.flags >> bit & 1U) != 0) ++flags[parts.brdf.flag_names[bit]];
-    }
-  }
-  std::vector<std::pair<std::string, std::string>> facts;
-  for (const auto& [name, count] : flags) facts.emplace_back("flagged " + name, fmt::format("{} values", count));
-  if (flags.empty()) facts.emplace_back("flags", "none");
-  const daemon::ScanCounts& n = parts.scan.info.counts;
-  facts.emplace_back("attempts", fmt::format("{} for {} items; {} points measured again after a drift", n.attempts,
-                                             n.items, n.reopened));
-  facts.emplace_back("visits", fmt::format("{}: {} of the standard, {} of the sample, the rest of the dark", n.visits,
-                                           n.reference_visits, n.check_visits));
-  facts.emplace_back("largest drift between visits", n.reference_visits + n.check_visits > 1
-                                                         ? percent(parts.scan.info.largest_drift)
-                                                         : "not looked for");
-  for (const api::AnalysisFact& fact : parts.facts) {
-    if (!fact.name.starts_with("cross-validated") && !fact.name.starts_with("reciprocity")) continue;
-    facts.emplace_back(html_text(fact.name), fact_value(fact) + " (" + html_text(fact.note) + ")");
-  }
-  return "<h2>Self-checks</h2>\n" + html_facts(facts) +
-         fmt::format("<p><code>gonioctl scan show {0}</code>, <code>gonioctl data describe {0}</code></p>\n",
-                     parts.scan.info.id);
+         fmt::format("<p><code>gonioctl data describe {}</code>; of the most uncertain point: ", parts.scan.info.id) +
+         trace_command(parts.scan, worst.point) + "</p>\n";
 }
 
 std::string values_section(const ReportParts& parts) {

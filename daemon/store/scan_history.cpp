@@ -14,12 +14,15 @@ std::vector<HistoryReading> history_readings(Database& database, ScanId scan) {
   std::vector<HistoryReading> readings;
   Statement& query = database.statement(
       "SELECT d.utc_ns, v.kind IS 'dark', exposure_ns, mean_dn, monitor_mean, lamp_temperature_c, "
-      "detector_temperature_c, room_temperature_c, humidity_percent FROM reading d LEFT JOIN attempt a USING "
+      "detector_temperature_c, room_temperature_c, humidity_percent, reading_id, d.attempt_id, d.visit_id, "
+      "coalesce(v.kind, a.target) FROM reading d LEFT JOIN attempt a USING "
       "(attempt_id) LEFT JOIN visit v USING (visit_id) WHERE used = 1 AND (a.scan_id = ?1 OR v.scan_id = ?1) ORDER BY "
       "reading_id");
   query.bind(scan);
   while (query.next()) {
-    readings.push_back({.at = history_time(query.integer(0)),
+    readings.push_back({.reading = query.integer(9),
+                        .of = query.text(12),
+                        .at = history_time(query.integer(0)),
                         .is_dark = query.integer(1) != 0,
                         .exposure_s = in_seconds(Duration(query.integer(2))),
                         .mean_dn = query.real(3),
@@ -28,6 +31,8 @@ std::vector<HistoryReading> history_readings(Database& database, ScanId scan) {
                         .detector_temperature_c = query.real(6),
                         .room_temperature_c = query.real(7),
                         .humidity_percent = query.real(8)});
+    if (!query.is_null(10)) readings.back().attempt = query.integer(10);
+    if (!query.is_null(11)) readings.back().visit = query.integer(11);
   }
   return readings;
 }

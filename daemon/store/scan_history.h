@@ -12,6 +12,10 @@ namespace gonio::daemon {
 
 /// What was latched with one exposure, beside the light.
 struct HistoryReading {
+  std::int64_t reading = 0;             ///< reading_id
+  std::optional<std::int64_t> attempt;  ///< attempt_id, of an item's reading
+  std::optional<std::int64_t> visit;    ///< visit_id, of a visit's
+  std::string of;                       ///< "sample", "reference", or the visit's kind: "dark", "check"
   UtcTime at{};
   bool is_dark = false;
   double exposure_s = 0.0;

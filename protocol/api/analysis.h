@@ -13,8 +13,9 @@
 namespace gonio::api {
 
 /// What the worker program can be asked for.
-inline constexpr std::array<std::string_view, 10> kAnalysisKinds{
-    "export", "describe", "plot", "report", "trace", "quantities", "fit", "compare", "symmetry", "repeatability"};
+inline constexpr std::array<std::string_view, 11> kAnalysisKinds{"export",   "describe",      "plot",    "report",
+                                                                 "trace",    "quantities",    "fit",     "compare",
+                                                                 "symmetry", "repeatability", "readings"};
 /// Formats of an export. "csv+json" is our own, which loses nothing.
 inline constexpr std::array<std::string_view, 10> kExportFormats{"csv+json", "bird", "astm",  "zemax", "merl",
                                                                  "ssdd",     "pab",  "klems", "rgl",   "nexus"};

@@ -11,6 +11,7 @@ body = name . '-body.dat'; points = name . '-points.dat'; formula = name . '-for
 stats body using 4 nooutput; most = STATS_max
 stats body using 1 nooutput; reach = 1.15 * (STATS_max > -STATS_min ? STATS_max : -STATS_min)
 stats body using 3 nooutput; top = STATS_max
+stats formula using 2 nooutput; most_formula = STATS_max
 ray = 1.15 * most
 high = 1.1 * (top > ray * cos(theta_i) ? top : ray * cos(theta_i))
 reach = (reach > 1.12 * ray * sin(theta_i) ? reach : 1.12 * ray * sin(theta_i))
@@ -53,9 +54,8 @@ if (kind eq 'cut') {
 }
 marks = (kind eq 'cut')
 set bmargin at screen 0.42; set tmargin at screen 0.88
-stats formula using 2 nooutput
-set yrange [0:1.25*STATS_max]; set format x ''; set ylabel 'f_r [sr^{-1}]' font ',11'
-set key top center horizontal font ',10' samplen 1.5
+set yrange [0:1.3*most_formula]; set format x ''; set ylabel 'f_r [sr^{-1}]' font ',11'
+set key top center horizontal font ',10' samplen 1.5 width 1
 if (marks) {
   set arrow 11 from theta_i, graph 0 to theta_i, graph 1 nohead dt 2 lc rgb '#d62728'; set arrow 12 from -theta_i, graph 0 to -theta_i, graph 1 nohead dt 3 lc rgb '#d62728'
   set label 11 'retro' at theta_i, graph 0.05 left offset 0.3,0 tc rgb '#d62728' font ',10'; set label 12 'specular' at -theta_i, graph 0.05 right offset -0.3,0 tc rgb '#d62728' font ',10'
@@ -65,7 +65,8 @@ if (marks) {
   set arrow 11 from 0, graph 0 to 0, graph 1 nohead dt 2 lc rgb '#d62728'; set arrow 12 from 180, graph 0 to 180, graph 1 nohead dt 3 lc rgb '#d62728'
   set label 11 'retro' at 0, graph 0.05 left offset 0.3,0 tc rgb '#d62728' font ',10'; set label 12 'specular' at 180, graph 0.05 left offset 0.3,0 tc rgb '#d62728' font ',10'
   plot for [k = 0:2] formula index k using 1:2 with lines lc rgb colours[k+1] lw 1.5 title sprintf('table, {/Symbol q}_r = %d°', 30 + 15*k), \
-    for [k = 0:2] points index k using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb colours[k+1] notitle
+    for [k = 0:2] points index k using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb colours[k+1] notitle, \
+    NaN with points pt 7 ps 0.5 lc rgb '#555555' title 'measured, U'
 }
 unset label; unset key
 set bmargin at screen 0.12; set tmargin at screen 0.38

@@ -2,11 +2,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 
 #include "tests/scenario/bench.h"
@@ -27,6 +32,73 @@ if [ -e "$here/stall" ]; then
 fi
 exec )";
 
+// The part of a page below a heading.
+std::string section_of(const std::string& page, const std::string& heading) {
+  const std::size_t begin = page.find("<h2>" + heading);
+  return begin == std::string::npos ? "" : page.substr(begin, page.find("<h2>", begin + 4) - begin);
+}
+
+// Each once; those with a place to fill in are for people.
+std::set<std::string> commands_in(const std::string& section) {
+  std::set<std::string> commands;
+  const std::string before = "<code>gonioctl ";
+  for (std::size_t at = section.find(before); at != std::string::npos; at = section.find(before, at + 1)) {
+    const std::size_t begin = at + before.size();
+    const std::string command = section.substr(begin, section.find("</code>", begin) - begin);
+    if (command.find("POINT") == std::string::npos) commands.insert(command);
+  }
+  return commands;
+}
+
+// What a reader sees, without commands and marks.
+std::string visible_text(std::string html) {
+  for (const auto& [open, close] : {std::pair{"<code", "</code>"}, std::pair{"<pre", "</pre>"}, std::pair{"<", ">"}}) {
+    for (std::size_t at = html.find(open); at != std::string::npos; at = html.find(open, at)) {
+      const std::size_t end = html.find(close, at);
+      if (end == std::string::npos) break;
+      html.replace(at, end + std::string(close).size() - at, " ");
+    }
+  }
+  return html;
+}
+
+// Words that are numbers, and nothing but; times of day are none.
+std::vector<std::string> numbers_in(std::string text) {
+  text = std::regex_replace(text, std::regex("[0-9-]+T[0-9:.]+Z"), " ");
+  for (const char* parting : {"\u00b1", ",", ";", ":", "(", ")", "{", "}", "[", "]", "\""}) {
+    for (std::size_t at = text.find(parting); at != std::string::npos; at = text.find(parting, at)) {
+      text.replace(at, std::string(parting).size(), " ");
+    }
+  }
+  std::istringstream words(text);
+  std::vector<std::string> numbers;
+  for (std::string word; words >> word;) {
+    if (word.back() == '.') word.pop_back();
+    char* end = nullptr;
+    (void)std::strtod(word.c_str(), &end);
+    if (!word.empty() && *end == '\0' && word.find_first_of("0123456789") != std::string::npos) numbers.push_back(word);
+  }
+  return numbers;
+}
+
+// Half a unit of the last digit that is shown.
+double rounding_of(const std::string& number) {
+  const std::size_t e = number.find('e');
+  const std::size_t point = number.find('.');
+  const int decimals =
+      point == std::string::npos || point > e ? 0 : static_cast<int>(std::min(e, number.size()) - point) - 1;
+  const int exponent = e == std::string::npos ? 0 : std::stoi(number.substr(e + 1));
+  return 0.5 * std::pow(10.0, exponent - decimals);
+}
+
+// As it stands there, or as a part of one beside percent.
+bool is_among(const std::string& shown, const std::vector<double>& said) {
+  const double x = std::stod(shown);
+  const double within = 1.001 * rounding_of(shown);
+  return std::ranges::any_of(said,
+                             [&](double v) { return std::abs(v - x) <= within || std::abs(100.0 * v - x) <= within; });
+}
+
 class Analysis : public testing::Test {
  protected:
   Analysis() : bench_(SceneOptions{}) {
@@ -40,6 +112,33 @@ class Analysis : public testing::Test {
     const long id = bench_.submit(plan_text({.theta_i_deg = "[0, 30]", .phi_r_deg = "[0, 60, 120, 180]"}));
     bench_.wait_for_state(id, {"done"});
     return id;
+  }
+  // All numbers that a command of a page says, on its output and in the tables that it writes.
+  std::vector<double> said_by(const std::string& command) {
+    const std::string folder = bench_.folder() + "/traced";
+    std::filesystem::create_directories(folder);
+    std::istringstream words(command);
+    std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
+    const bool writes =
+        arguments[0] == "data" &&
+        std::ranges::count(std::vector<std::string>{"fit", "symmetry", "readings", "plot"}, arguments[1]) > 0;
+    if (writes) arguments.insert(arguments.end(), {"-o", folder + "/made.csv"});
+    const Finished done = bench_.gonioctl(arguments);
+    EXPECT_EQ(done.exit_code, 0) << command << '\n' << done.errors;
+    std::vector<double> numbers;
+    for (const std::string& number : numbers_in(done.output + " " + done.errors)) numbers.push_back(std::stod(number));
+    std::filesystem::remove_all(folder);
+    return numbers;
+  }
+  void expect_traced(const std::string& section) {
+    std::vector<double> said;
+    for (const std::string& command : commands_in(section)) {
+      const std::vector<double> more = said_by(command);
+      said.insert(said.end(), more.begin(), more.end());
+    }
+    const std::vector<std::string> shown = numbers_in(visible_text(section));
+    EXPECT_FALSE(shown.empty());
+    for (const std::string& number : shown) EXPECT_TRUE(is_among(number, said)) << number;
   }
   nlohmann::json start(const nlohmann::json& request) {
     const HttpAnswer answer = bench_.daemon().post("analysis", request.dump());
@@ -115,7 +214,7 @@ TEST_F(Analysis, AReportStandsAloneAndItsCommandsLeadToRawReadings) {
   const std::string page = text_of(page_file);
   EXPECT_THAT(page, HasSubstr("<svg"));
   EXPECT_EQ(page.find("src="), std::string::npos) << "nothing is fetched from elsewhere";
-  for (const char* section : {"Result", "Sample and geometry", "Calibration chain", "Budget", "Self-checks",
+  for (const char* section : {"Result", "Sample and geometry", "Calibration chain", "Budget", "Self-checks", "Fit",
                               "Environment", "Gaps", "Who and when", "Software and configuration", "Pictures"}) {
     EXPECT_THAT(page, HasSubstr("<h2>" + std::string(section)));
   }
@@ -133,6 +232,28 @@ TEST_F(Analysis, AReportStandsAloneAndItsCommandsLeadToRawReadings) {
   for (const char* part :
        {"sample attempt", "reference attempt", "in force", "reading ", "dark visit", "m2 ", "monitor "}) {
     EXPECT_THAT(trace.output, HasSubstr(part));
+  }
+}
+
+TEST_F(Analysis, EveryNumberOfAReportIsSaidByTheCommandsOfItsSection) {
+  const std::string scan = std::to_string(measure());
+  const std::string page_file = bench_.folder() + "/report.html";
+  ASSERT_EQ(bench_.gonioctl({"data", "report", scan, "-o", page_file}).exit_code, 0);
+  const std::string page = text_of(page_file);
+
+  for (const char* heading : {"Result", "Budget", "Self-checks", "Fit", "Environment"}) {
+    SCOPED_TRACE(heading);
+    expect_traced(section_of(page, heading));
+  }
+  // A row has its own way down: the first four of them, value, U and k.
+  std::string values = section_of(page, "Values to look at");
+  values = values.substr(values.find("<tbody>"));
+  for (int row = 0; row < 4; ++row) {
+    SCOPED_TRACE(::testing::Message() << "row " << row);
+    const std::size_t end = values.find("</tr>");
+    ASSERT_NE(end, std::string::npos);
+    expect_traced(values.substr(0, end));
+    values.erase(0, end + 5);
   }
 }
 

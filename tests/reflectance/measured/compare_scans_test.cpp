@@ -41,6 +41,21 @@ TEST(CompareScans, CountsOnlyWhatDoesNotCancel) {
   EXPECT_NEAR(comparison.gaps[1].u.si(), std::sqrt(2e-6), 1e-12);
 }
 
+TEST(CompareScans, CountsAnErrorOfUnknownCourseAsEachPointsOwnBesideAModel) {
+  MeasuredScan scan = perfect_scan(wheat(), geometries({}), 3e-4);
+  scan.components = {{.name = "zero theta_r through unresolved slopes", .source = "", .is_pattern_known = false}};
+  for (MeasuredPoint& p : scan.points) {
+    p.shared = {{0, per_steradian(4e-4)}};
+    p.value = p.value + per_steradian(1e-3);
+  }
+
+  const ScanComparison off = compare_with_surface(scan, wheat()).value();
+
+  // Two of hypot(3e-4, 4e-4), each by itself. As one error of 4e-4 it would have explained nearly all of it away.
+  EXPECT_NEAR(off.gaps[0].z, 2.0, 1e-9);
+  EXPECT_NEAR(off.chi2, 4.0 * static_cast<double>(off.gaps.size()), 1e-6 * off.chi2);
+}
+
 TEST(CompareScans, FindsThatTwoScansOfOneSampleAgree) {
   const ScanComparison comparison = compare_scans(with_one_certificate(scan_of(wheat(), 11), 1.0),
                                                   with_one_certificate(scan_of(wheat(), 12), 1.0), {})
