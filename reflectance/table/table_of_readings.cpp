@@ -7,8 +7,7 @@ Result<TabulatedSurface> table_of_readings(std::span<const TableReading> reading
   Result<TabulatedSurface> table = TabulatedSurface::make(readings, options);
   if (table) return table;
   options.layout = TableLayout::Rings;
-  Result<TabulatedSurface> rings = TabulatedSurface::make(readings, options);
-  return rings ? std::move(rings) : std::move(table);
+  return TabulatedSurface::make(readings, options);  // what is wrong with both, rings say more plainly
 }
 
 }  // namespace gonio::reflectance
