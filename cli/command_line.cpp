@@ -169,6 +169,12 @@ class CommandLine {
     use.add_flag_callback(
         "--end", [this] { wanted_.use.in_use = false; }, "it counts no more: instrument.toml alone, for its job");
     use.add_option("--reason", wanted_.use.reason, "for the record");
+    CLI::App& certificate =
+        version_leaf(calibration, "certificate", "of a transfer: the working standard's, as CSV for `reference import`",
+                     Verb::CalibrationCertificate);
+    certificate.add_option("--expires", wanted_.expires, "the last day on which it holds, as 2027-11-22")->required();
+    certificate.add_option("--longest-gap-nm", wanted_.longest_gap_nm,
+                           "between wavelengths so far apart it may be drawn straight (1)");
     leaf(calibration, "chart", "the control chart of a check standard", Verb::CalibrationChart)
         ->add_option("standard", wanted_.standard, "its name: the sample of its plans")
         ->required();

@@ -59,6 +59,7 @@ enum class Verb : std::uint8_t {
   CalibrationShow,
   CalibrationUse,
   CalibrationChart,
+  CalibrationCertificate,
   ScanRecompute,
   ReferenceShow,
   ReferenceCheck,
@@ -105,7 +106,9 @@ struct Invocation {
   api::DetectorReadRequest reading;
   api::UseCalibrationRequest use;
   api::RecomputeRequest recompute;
-  std::string standard;  ///< of a chart
+  std::string standard;         ///< of a chart
+  std::string expires;          ///< of a certificate: a date
+  double longest_gap_nm = 1.0;  ///< likewise
 };
 
 /// Something to be printed instead: help or version (to standard output, exit code 0), or why the line is wrong (2).

@@ -20,6 +20,7 @@
 #include "cli/review_views.h"
 #include "cli/scan_comparison.h"
 #include "cli/scan_watch.h"
+#include "cli/transfer_certificate.h"
 #include "cli/views.h"
 
 namespace gonio::cli {
@@ -163,6 +164,8 @@ class Runner {
         return show(client_.get<api::CalibrationReport>(RouteId::CalibrationOne, wanted_.scan));
       case Verb::CalibrationUse:
         return use_calibration();
+      case Verb::CalibrationCertificate:
+        return print_certificate();
       case Verb::CalibrationChart:
         return show_chart();
       case Verb::ScanRecompute:
@@ -255,6 +258,15 @@ class Runner {
 
   Result<int> command(RouteId route, const std::string& body) {
     return show(client_.post<api::CommandReport>(route, wanted_.scan, body));
+  }
+
+  Result<int> print_certificate() {
+    const auto transfer = client_.get<api::CalibrationReport>(RouteId::CalibrationOne, wanted_.scan);
+    if (!transfer) return failure(transfer.error());
+    const auto text = certificate_csv(transfer->value, wanted_.expires, wanted_.longest_gap_nm);
+    if (!text) return failure(text.error());
+    world_.out << *text;
+    return 0;
   }
 
   Result<int> use_calibration() {

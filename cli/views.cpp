@@ -277,13 +277,15 @@ Table view(const api::InstrumentReport& instrument) {
                           axis.unit, axis.settle_s, number_text(axis.window), axis.unit));
   }
   for (const api::FilterReport& filter : instrument.filters) {
-    facts.add(fmt::format("filter_{}", filter.slot),
-              fmt::format("{} nm, {} nm wide, {} side", number_text(filter.centroid_nm), number_text(filter.fwhm_nm),
-                          filter.side));
+    facts.add(
+        fmt::format("filter_{}", filter.slot),
+        fmt::format("{} nm, {} nm wide, {} side{}", number_text(filter.centroid_nm), number_text(filter.fwhm_nm),
+                    filter.side, filter.attenuation ? fmt::format(", attenuated to {:g}", *filter.attenuation) : ""));
   }
   facts
-      .add("carriage_mm", fmt::format("sample {}, reference {}, trap {}", instrument.sample_mm, instrument.reference_mm,
-                                      instrument.trap_mm))
+      .add("carriage_mm",
+           fmt::format("sample {}, reference {}, trap {}{}", instrument.sample_mm, instrument.reference_mm,
+                       instrument.trap_mm, instrument.open_mm ? fmt::format(", open {}", *instrument.open_mm) : ""))
       .add("detector", instrument.detector_serial)
       .add("exposures_s",
            fmt::format("{} to {}, by twos", instrument.shortest_exposure_s, instrument.longest_exposure_s))

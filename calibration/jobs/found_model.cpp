@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "calibration/jobs/direct_beam.h"
+
 namespace gonio::calibration {
 
 namespace {
@@ -51,6 +53,13 @@ void put_zeros(InstrumentModel& model, const FoundValues& found) {
   }
 }
 
+// Without a stated stop nothing is absolute, whatever the beam.
+void put_direct_beams(InstrumentModel& model, const FoundValues& found) {
+  if (!model.absolute) return;
+  std::vector<DirectBeam> beams = direct_beams_of(found);
+  if (!beams.empty()) model.absolute->beams = std::move(beams);
+}
+
 }  // namespace
 
 Result<InstrumentModel> with_found(InstrumentModel model, const FoundValues& found) {
@@ -63,6 +72,7 @@ Result<InstrumentModel> with_found(InstrumentModel model, const FoundValues& fou
   }
   put_linearity(model, found);
   put_zeros(model, found);
+  put_direct_beams(model, found);
   return model;
 }
 

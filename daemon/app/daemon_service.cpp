@@ -326,8 +326,8 @@ void DaemonService::use_calibration(std::int64_t version, const api::UseCalibrat
     return reply(failure({.code = ErrorCode::InvalidInput,
                           .device = "calibration",
                           .tried = fmt::format("use calibration {}", version),
-                          .seen = "it is a run of a check standard, which changes no scan",
-                          .limit = "gonioctl calibration chart shows it"}));
+                          .seen = "its job, " + found->job + ", changes no scan",
+                          .limit = "gonioctl calibration show says what it found"}));
   }
   command(who, UseCalibration{.version = version, .in_use = request.in_use, .reason = request.reason},
           std::move(reply));
@@ -426,7 +426,9 @@ Result<api::StageReport> DaemonService::stage() {
 Result<api::PlanReport> DaemonService::check_plan(const api::PlanSubmission& submission) {
   const Result<CheckedPlan> checked = checked_plan(submission);
   if (!checked) return failure(checked.error());
-  return plan_report(*checked, parts_.instrument);
+  const Result<Instrument> known = ask_store([this](StoreReader& store) { return as_known(parts_.instrument, store); });
+  if (!known) return failure(known.error());
+  return plan_report(*checked, *known);
 }
 
 // A store that cannot be read teaches nothing; the plan is checked all the same.

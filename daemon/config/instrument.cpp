@@ -10,6 +10,7 @@
 
 #include "base/read_file.h"
 #include "base/toml_reader.h"
+#include "daemon/config/absolute_section.h"
 #include "daemon/config/beams_section.h"
 #include "daemon/config/configuration_hash.h"
 #include "daemon/config/drives_section.h"
@@ -129,9 +130,11 @@ Length carriage_position(TomlReader& table, std::string_view key, const drivers:
 }
 
 CarriagePositions read_carriage(TomlReader table, const drivers::StageConfig& stage) {
-  return {.sample = carriage_position(table, "sample_mm", stage),
-          .reference = carriage_position(table, "reference_mm", stage),
-          .trap = carriage_position(table, "trap_mm", stage)};
+  CarriagePositions carriage{.sample = carriage_position(table, "sample_mm", stage),
+                             .reference = carriage_position(table, "reference_mm", stage),
+                             .trap = carriage_position(table, "trap_mm", stage)};
+  if (table.kind("open_mm") != TomlKind::Absent) carriage.open = carriage_position(table, "open_mm", stage);
+  return carriage;
 }
 
 Filter read_filter(TomlReader& table, const drivers::AxisConfig& wheel) {
@@ -144,6 +147,7 @@ Filter read_filter(TomlReader& table, const drivers::AxisConfig& wheel) {
   filter.fwhm = nanometres(table.number("fwhm_nm", {.least = 0.01, .most = 1000.0, .unit = "nm"}));
   filter.out_of_band_fraction = table.number("out_of_band_fraction", kFraction);
   filter.side = static_cast<FilterSide>(table.choice("side", kSides));
+  filter.attenuation = read_attenuation(table);
   return filter;
 }
 
@@ -229,6 +233,19 @@ void read_stage(TomlReader table, Instrument& instrument) {
   instrument.shadow = read_shadow(table.table("shadow"));
 }
 
+const Filter* nearest_filter(const Instrument& instrument, Wavelength wavelength, bool is_attenuated) {
+  const Filter* nearest = nullptr;
+  double least = 0.0;
+  for (const Filter& filter : instrument.filters) {
+    const double off = std::abs((filter.centroid - wavelength).si());
+    if (filter.attenuation.has_value() != is_attenuated || off > 0.5 * filter.fwhm.si()) continue;
+    if (nearest != nullptr && off >= least) continue;
+    nearest = &filter;
+    least = off;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 Result<Instrument> parse_instrument(std::string_view text, const std::string& file) {
@@ -250,6 +267,7 @@ Result<Instrument> parse_instrument(std::string_view text, const std::string& fi
   instrument.model.lamp = read_lamp_model(lamp);
   instrument.lamp = read_lamp_band(lamp);
   read_beams(*root, instrument.model);
+  read_absolute(*root, instrument.model);
   instrument.holds = read_holds(*root);
   GONIO_TRY(root->finish());
   instrument.sha256 = configuration_hash(*root, text);  // last: it asks for keys that this wire may not have
@@ -269,15 +287,11 @@ Result<Instrument> read_instrument(const std::string& path) {
 }
 
 const Filter* filter_for(const Instrument& instrument, Wavelength wavelength) {
-  const Filter* nearest = nullptr;
-  double least = 0.0;
-  for (const Filter& filter : instrument.filters) {
-    const double off = std::abs((filter.centroid - wavelength).si());
-    if (off > 0.5 * filter.fwhm.si() || (nearest != nullptr && off >= least)) continue;
-    nearest = &filter;
-    least = off;
-  }
-  return nearest;
+  return nearest_filter(instrument, wavelength, false);
+}
+
+const Filter* attenuated_filter_for(const Instrument& instrument, Wavelength wavelength) {
+  return nearest_filter(instrument, wavelength, true);
 }
 
 }  // namespace gonio::daemon

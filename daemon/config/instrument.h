@@ -32,6 +32,7 @@ struct CarriagePositions {
   Length sample;
   Length reference;
   Length trap;
+  std::optional<Length> open{};  ///< where nothing stands in the source's beam; none: there is no such place
 };
 
 enum class FilterSide : std::uint8_t { Detector, Source };
@@ -43,6 +44,8 @@ struct Filter {
   Wavelength fwhm;
   double out_of_band_fraction = 0.0;  ///< of the signal, 0..1
   FilterSide side = FilterSide::Detector;
+  /// Set: an attenuator stands with it, which passes this part of the light. Only for looks into the source.
+  std::optional<Measured<double>> attenuation{};
 };
 
 /// The keep-out about retro-reflection: the detector's head in the source's beam.
@@ -98,7 +101,10 @@ struct Instrument {
 /// FileUnreadable.
 [[nodiscard]] Result<Instrument> read_instrument(const std::string& path);
 
-/// The filter for a wavelength, or nullptr: the one whose centroid lies within half its FWHM, the nearest of them.
+/// The filter for a wavelength, or nullptr: of those without an attenuator the one whose centroid lies within half its
+/// FWHM, the nearest of them.
 [[nodiscard]] const Filter* filter_for(const Instrument& instrument, Wavelength wavelength);
+/// Likewise of those with one.
+[[nodiscard]] const Filter* attenuated_filter_for(const Instrument& instrument, Wavelength wavelength);
 
 }  // namespace gonio::daemon

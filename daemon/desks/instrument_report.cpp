@@ -55,11 +55,14 @@ api::InstrumentReport instrument_report(const Instrument& instrument, const std:
                                .store_free_bytes = free_bytes(store_file)};
   for (const stage::Axis axis : stage::kAllAxes) report.axes.push_back(limits_of(instrument, axis));
   for (const Filter& filter : instrument.filters) {
-    report.filters.push_back({.slot = filter.slot,
-                              .centroid_nm = in_nanometres(filter.centroid),
-                              .fwhm_nm = in_nanometres(filter.fwhm),
-                              .side = filter.side == FilterSide::Source ? "source" : "detector"});
+    report.filters.push_back(
+        {.slot = filter.slot,
+         .centroid_nm = in_nanometres(filter.centroid),
+         .fwhm_nm = in_nanometres(filter.fwhm),
+         .side = filter.side == FilterSide::Source ? "source" : "detector",
+         .attenuation = filter.attenuation ? std::optional(filter.attenuation->value) : std::nullopt});
   }
+  if (instrument.carriage.open) report.open_mm = in_millimetres(*instrument.carriage.open);
   add_detector(report, instrument);
   return report;
 }

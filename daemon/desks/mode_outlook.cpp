@@ -41,6 +41,13 @@ Result<void> add_time(const api::Plan& plan, const PlannedScan& planned, const I
   return {};
 }
 
+Error no_surface() {
+  return {.code = ErrorCode::IncompleteData,
+          .device = "plan",
+          .tried = "foresee the uncertainty of a BRDF",
+          .seen = "a look into the source, past all targets"};
+}
+
 Result<void> add_budgets(const api::Plan& plan, const PlannedScan& planned, const Instrument& instrument,
                          const calibration::ReferenceStandard& standard, ModeOutlook& outlook) {
   constexpr std::size_t kLookedAt = 200;
@@ -55,6 +62,7 @@ Result<void> add_budgets(const api::Plan& plan, const PlannedScan& planned, cons
   const std::size_t step = std::max<std::size_t>(1, planned.order.size() / kLookedAt);
   for (std::size_t k = 0; k < planned.order.size(); k += step) {
     const ScanPoint& point = planned.points[static_cast<std::size_t>(planned.order[k])];
+    if (is_below_surface(point.geometry)) return failure(no_surface());
     auto budget =
         calibration::expected_budget(point.geometry, point.wavelength, expectation, instrument.model, standard);
     if (!budget) return failure(std::move(budget).error());

@@ -36,17 +36,23 @@ Result<double> within_limits(const Instrument& instrument, Axis axis, double pos
   return std::clamp(position, config.low, config.high);
 }
 
-Result<double> filter_slot(const Instrument& instrument, Wavelength wavelength) {
-  if (const Filter* filter = filter_for(instrument, wavelength)) return static_cast<double>(filter->slot);
+Result<double> filter_slot(const Instrument& instrument, Wavelength wavelength, bool is_attenuated) {
+  const Filter* filter =
+      is_attenuated ? attenuated_filter_for(instrument, wavelength) : filter_for(instrument, wavelength);
+  if (filter != nullptr) return static_cast<double>(filter->slot);
   std::string known;
-  for (const Filter& filter : instrument.filters) {
-    known += fmt::format("{}{:g}", known.empty() ? "" : ", ", in_nanometres(filter.centroid));
+  for (const Filter& one : instrument.filters) {
+    if (one.attenuation.has_value() != is_attenuated) continue;
+    known += fmt::format("{}{:g}", known.empty() ? "" : ", ", in_nanometres(one.centroid));
   }
-  return failure(Error{.code = ErrorCode::InvalidInput,
-                       .device = "stage",
-                       .tried = "find the filter of a wavelength",
-                       .seen = fmt::format("{:g} nm", in_nanometres(wavelength)),
-                       .limit = fmt::format("filters with centroids at {} nm", known.empty() ? "no" : known)});
+  return failure(
+      Error{.code = ErrorCode::InvalidInput,
+            .device = "stage",
+            .tried = is_attenuated ? "find the attenuator of a wavelength, to look into the source"
+                                   : "find the filter of a wavelength",
+            .seen = fmt::format("{:g} nm", in_nanometres(wavelength)),
+            .limit = fmt::format("filters{} with centroids at {} nm", is_attenuated ? " with an attenuation" : "",
+                                 known.empty() ? "no" : known)});
 }
 
 const drivers::MotionTarget& clear_way(const std::vector<drivers::MotionTarget>& ways, const Instrument& instrument,
@@ -71,6 +77,17 @@ bool is_blocked(const Geometry& g, const Instrument& instrument) {
   return keep_out && phase_angle(g) < keep_out->least_separation() + drivers::kPathResolution;
 }
 
+bool is_below_surface(const Geometry& g) {
+  constexpr Angle kHorizon = degrees(90.0);
+  return g.theta_i >= kHorizon || g.theta_r >= kHorizon;
+}
+
+Length carriage_place(const Instrument& instrument, calibration::Target target, const Geometry& g) {
+  const CarriagePositions& carriage = instrument.carriage;
+  if (is_below_surface(g)) return carriage.open.value_or(carriage.sample);
+  return target == calibration::Target::Sample ? carriage.sample : carriage.reference;
+}
+
 stage::PerAxis<double> home_position(const Instrument& instrument) {
   stage::PerAxis<double> home{};
   for (const Axis axis : stage::kAllAxes) {
@@ -84,7 +101,7 @@ Result<drivers::MotionTarget> axis_targets(const Geometry& g, Wavelength wavelen
                                            const stage::PerAxis<double>& standing) {
   const auto ways = drivers::solutions(g, instrument.stage, standing);
   if (!ways) return failure(ways.error());
-  const auto slot = filter_slot(instrument, wavelength);
+  const auto slot = filter_slot(instrument, wavelength, is_below_surface(g));
   if (!slot) return failure(slot.error());
   drivers::MotionTarget target = clear_way(*ways, instrument, standing);
   target[stage::index_of(Axis::FilterWheel)] = *slot;

@@ -108,9 +108,7 @@ class Walk {
   Result<void> go_to(const ScanPoint& point, Target side) {
     auto target = axis_targets(point.geometry, point.wavelength, instrument_, standing_);
     assert(target);  // the planner has checked every direction
-    const CarriagePositions& carriage = instrument_.carriage;
-    (*target)[stage::index_of(Axis::Carriage)] =
-        in_millimetres(side == Target::Sample ? carriage.sample : carriage.reference);
+    (*target)[stage::index_of(Axis::Carriage)] = in_millimetres(carriage_place(instrument_, side, point.geometry));
     const auto step = step_time(instrument_, standing_, *target);
     if (!step) return failure(at_point(point, step.error()));
     time_.move += seconds(in_seconds(step->move) * experience_.motion.value);

@@ -113,6 +113,13 @@ class Expansion {
     return {};
   }
 
+  [[nodiscard]] static Error nothing_open() {
+    return {.code = ErrorCode::InvalidInput,
+            .tried = "look into the source past the targets",
+            .seen = "no place of the carriage where nothing stands in the beam",
+            .limit = "[stage.carriage] open_mm in instrument.toml"};
+  }
+
   void add(const ScanPoint& point, int repeats) {
     const auto number = static_cast<std::int32_t>(planned_.points.size());
     const auto twin = known_.find_or_add(point.geometry, point.wavelength, number);
@@ -131,6 +138,7 @@ class Expansion {
     ScanPoint point{.geometry = g, .wavelength = wavelength};
     const auto target = axis_targets(g, wavelength, instrument_, home_);
     if (!target) return failure(named_by_the_plan(target.error(), g, origin));
+    if (is_below_surface(g) && !instrument_.carriage.open) return failure(named_by_the_plan(nothing_open(), g, origin));
     // An axis that turns past its target must be able to, wherever it comes from.
     const auto turns = drivers::check_approach(instrument_.stage, *target);
     if (!turns) return failure(named_by_the_plan(turns.error(), g, origin));

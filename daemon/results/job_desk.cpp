@@ -3,16 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "calibration/jobs/arm_zeros.h"
 #include "calibration/jobs/control_chart.h"
+#include "calibration/jobs/direct_beam.h"
 #include "calibration/jobs/linearity_ladder.h"
 #include "daemon/config/instrument.h"
-#include "daemon/results/calibration_desk.h"
+#include "daemon/results/brdf_means.h"
+#include "daemon/results/transfer_run.h"
 #include "daemon/results/version_desk.h"
 #include "daemon/store/version_list.h"
 #include "protocol/api/plan.h"
@@ -36,38 +38,38 @@ Error no_run(std::string seen, std::string limit) {
 
 // The mean REFF of all points, and what of its uncertainty each run draws anew. Shared errors keep their correlation.
 FoundValues run_of_check_standard(const NewBrdf& brdf) {
-  const double weight = std::numbers::pi / static_cast<double>(brdf.rows.size());
-  double mean = 0.0;
-  double random = 0.0;
-  std::map<std::size_t, double> shared;
-  for (const BrdfRow& row : brdf.rows) {
-    mean += weight * row.value_per_sr;
-    random += std::pow(weight * row.u_random_per_sr, 2);
-    for (std::size_t k = 0; k + 1 < row.sensitivities_per_sr.size(); k += 2) {
-      shared[static_cast<std::size_t>(row.sensitivities_per_sr[k])] += weight * row.sensitivities_per_sr[k + 1];
-    }
-  }
-  double own = random;
-  double all = random;
-  for (const auto& [component, effect] : shared) {
-    all += effect * effect;
-    if (component < brdf.component_names.size() && is_drawn_anew(brdf.component_names[component])) {
-      own += effect * effect;
-    }
-  }
-  return {.values = {{.name = std::string(kMeanReff), .unit = "1", .value = mean},
-                     {.name = std::string(kOwnU), .unit = "1", .value = std::sqrt(own)}},
-          .covariance = {all, 0.0, 0.0, 0.0},
+  std::vector<std::size_t> all(brdf.rows.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const BrdfMeans mean = means_of(brdf, {std::move(all)});
+  return {.values = {{.name = std::string(kMeanReff), .unit = "1", .value = mean.values.front()},
+                     {.name = std::string(kOwnU), .unit = "1", .value = mean.u_own.front()}},
+          .covariance = {mean.covariance.front(), 0.0, 0.0, 0.0},
           .note = fmt::format("mean of {} points", brdf.rows.size())};
 }
 
+// Those that the planner has put into the beam at the wavelengths of the plan.
+std::vector<calibration::Attenuator> attenuators_of(const Instrument& instrument,
+                                                    const calibration::ScanReadings& readings) {
+  std::vector<calibration::Attenuator> attenuators;
+  for (const calibration::PlannedPoint& point : readings.points) {
+    const Filter* filter = attenuated_filter_for(instrument, point.wavelength);
+    if (filter != nullptr) attenuators.push_back({point.wavelength, *filter->attenuation});
+  }
+  return attenuators;
+}
+
 Result<FoundValues> fitted(const api::PlanCalibration& wanted, const calibration::ScanReadings& readings,
-                           const calibration::InstrumentModel& stated, const NewBrdf& brdf) {
+                           const Instrument& instrument, const calibration::InstrumentModel& stated,
+                           const NewBrdf& brdf, const std::string& master) {
   switch (wanted.job) {
     case api::CalibrationJob::Linearity:
       return calibration::fit_linearity(readings, stated, {.order = wanted.order});
     case api::CalibrationJob::ArmZeros:
       return calibration::fit_arm_zeros(readings, stated, {.u_mirror = wanted.u_mirror});
+    case api::CalibrationJob::DirectBeam:
+      return calibration::fit_direct_beam(readings, stated, attenuators_of(instrument, readings));
+    case api::CalibrationJob::Transfer:
+      return transfer_of(brdf, readings, master);
     case api::CalibrationJob::CheckStandard:
       break;
   }
@@ -99,6 +101,7 @@ std::string inputs_of(ScanId scan, const ScanTexts& texts, const Instrument& ins
                         {"detector", instrument.detector.serial},
                         {"calibrations", version_list_text(versions)},
                         {"instrument_sha256", texts.instrument_sha256},
+                        {"reference_sha256", texts.reference_sha256},
                         {"plan_sha256", texts.plan_sha256}}
       .dump();
 }
@@ -140,9 +143,12 @@ Result<std::optional<NewFoundCalibration>> fit_job(StoreReader& reader, ScanId s
   if (!instrument) return failure(instrument.error());
   const auto readings = reader.readings(scan, instrument->stage);
   if (!readings) return failure(readings.error());
+  const Result<ScanInfo> info = reader.scan(scan);
+  if (!info) return failure(info.error());
   Result<ModelOfVersions> chosen = model_of(brdf, reader, *instrument, *readings);
   if (!chosen) return failure(chosen.error());
-  Result<FoundValues> found = fitted(*plan->calibration, *readings, chosen->model, brdf);
+  Result<FoundValues> found =
+      fitted(*plan->calibration, *readings, *instrument, chosen->model, brdf, info->reference_serial);
   if (!found) return failure(found.error());
   return std::optional(
       NewFoundCalibration{.scan = scan,

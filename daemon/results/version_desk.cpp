@@ -58,8 +58,8 @@ std::vector<CalibrationVersion> those_that_count(const std::vector<FoundCalibrat
 Result<void> check_asked(const FoundCalibration& found, const Instrument& instrument) {
   const std::string tried = fmt::format("take calibration {}", found.version);
   if (!changes_scans(found.job)) {
-    return failure(refused(ErrorCode::InvalidInput, tried, "a run of a check standard changes no scan",
-                           "gonioctl calibration chart shows it"));
+    return failure(refused(ErrorCode::InvalidInput, tried, "its job, " + found.job + ", changes no scan",
+                           "gonioctl calibration show says what it found"));
   }
   if (is_of(found, instrument)) return {};
   return failure(refused(ErrorCode::InvalidInput, tried, "it was found on detector " + detector_of(found),
@@ -98,7 +98,7 @@ AskedVersions asked_versions_of(const EventRecord& event) {
 }
 
 bool changes_scans(const std::string& job) {
-  return job != "check-standard";
+  return job != "check-standard" && job != "transfer";
 }
 
 Result<ModelOfVersions> model_with(const std::vector<FoundCalibration>& all, const AskedVersions& asked,
@@ -124,6 +124,15 @@ Result<ModelOfVersions> model_with(const std::vector<FoundCalibration>& all, con
     chosen.versions.push_back(version);
   }
   return chosen;
+}
+
+Result<Instrument> as_known(Instrument instrument, StoreReader& reader) {
+  const Result<std::vector<FoundCalibration>> all = reader.found_calibrations();
+  if (!all) return failure(all.error());
+  Result<ModelOfVersions> known = model_with(*all, std::nullopt, instrument, {});
+  if (!known) return failure(known.error());
+  instrument.model = std::move(known->model);
+  return instrument;
 }
 
 Result<FoundCalibration> found_version(StoreReader& reader, CalibrationVersion version) {

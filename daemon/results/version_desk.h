@@ -34,7 +34,10 @@ struct ModelOfVersions {
                                                  const Instrument& instrument,
                                                  const calibration::ScanReadings& readings);
 
-/// Whether what this job finds can change a scan; a check standard's run cannot.
+/// The instrument with all that counts of what was found of it. Errors: those of the store and of model_with.
+[[nodiscard]] Result<Instrument> as_known(Instrument instrument, StoreReader& reader);
+
+/// Whether what this job finds can change a scan; a check standard's run and a transfer cannot.
 [[nodiscard]] bool changes_scans(const std::string& job);
 
 /// Errors: NotFound.

@@ -80,9 +80,8 @@ Result<void> Sequencer::Impl::aim(Job& job) const {
   auto target = axis_targets(point.geometry, point.wavelength, config.instrument,
                              stage ? positions_of(*stage) : home_position(config.instrument));
   if (!target) return failure(target.error());
-  const CarriagePositions& carriage = config.instrument.carriage;
   (*target)[stage::index_of(Axis::Carriage)] =
-      in_millimetres(job.item.target == Target::Sample ? carriage.sample : carriage.reference);
+      in_millimetres(carriage_place(config.instrument, job.item.target, point.geometry));
   job.target = *target;
   return {};
 }

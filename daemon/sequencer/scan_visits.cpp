@@ -33,8 +33,7 @@ std::optional<Place> place_of(const ActiveScan& scan, const ItemKey& item, const
   if (!target) return std::nullopt;
   Place place = standing;
   for (std::size_t a = 0; a < place.size(); ++a) place[a] = (*target)[a].value_or(standing[a]);
-  place[stage::index_of(Axis::Carriage)] =
-      in_millimetres(item.target == Target::Sample ? instrument.carriage.sample : instrument.carriage.reference);
+  place[stage::index_of(Axis::Carriage)] = in_millimetres(carriage_place(instrument, item.target, point.geometry));
   return place;
 }
 

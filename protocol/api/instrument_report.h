@@ -24,7 +24,8 @@ struct FilterReport {
   int slot = 0;
   double centroid_nm = 0.0;
   double fwhm_nm = 0.0;
-  std::string side;  ///< "detector" or "source"
+  std::string side;                   ///< "detector" or "source"
+  std::optional<double> attenuation;  ///< what an attenuator beside it passes; absent: none
 };
 
 struct InstrumentReport {
@@ -37,6 +38,7 @@ struct InstrumentReport {
   double sample_mm = 0.0;
   double reference_mm = 0.0;
   double trap_mm = 0.0;
+  std::optional<double> open_mm;  ///< where nothing stands in the beam
   std::string detector_serial;
   double shortest_exposure_s = 0.0;
   double longest_exposure_s = 0.0;

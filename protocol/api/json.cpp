@@ -120,9 +120,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(UseCalibrationRequest, in_use, r
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(RecomputeRequest, calibration)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(AxisLimits, name, unit, low, high, speed_per_s, acceleration_per_s2,
                                                 settle_s, window)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(FilterReport, slot, centroid_nm, fwhm_nm, side)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(FilterReport, slot, centroid_nm, fwhm_nm, side, attenuation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(InstrumentReport, name, sha256, stage_link, heartbeat_timeout_s, axes,
-                                                filters, sample_mm, reference_mm, trap_mm, detector_serial,
+                                                filters, sample_mm, reference_mm, trap_mm, open_mm, detector_serial,
                                                 shortest_exposure_s, longest_exposure_s, full_scale_dn, read_noise_dn,
                                                 electrons_per_dn, monitor_low, monitor_high, store_free_bytes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StopReport, epoch)

@@ -67,7 +67,8 @@ void read_reference(TomlReader table, Plan& plan) {
   constexpr std::array<std::string_view, 3> kModes{"same-geometry", "anchor", "absolute"};  // as ReferenceMode
   constexpr double kBlock = 900.0;
   plan.reference_standard = table.text("standard");
-  plan.reference_mode = static_cast<ReferenceMode>(table.choice_or("mode", 0, kModes));
+  const auto usual = static_cast<std::size_t>(plan.reference_mode);
+  plan.reference_mode = static_cast<ReferenceMode>(table.choice_or("mode", usual, kModes));
   plan.block = seconds(table.number_or("block_s", kBlock, kWait));
   read_anchor(table, plan);
 }
@@ -185,6 +186,7 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file,
   make_ladder(*root, plan);
   read_reference(root->table("reference"), plan);
   read_visits(*root, plan);
+  refuse_targets_beside_a_beam(*root, plan);
   read_order(*root, plan);
   read_on_error(*root, plan);
   read_on_restart(*root, plan);

@@ -71,6 +71,35 @@ void read_arm_zeros(TomlReader& table, Plan& plan, PlanCalibration& wanted) {
   plan.isotropic = false;  // at the normal each azimuth is a crossing of its own
 }
 
+// Straight through, and beside it on four sides: theta_r and, as far along its circle, phi_r.
+void read_direct_beam(TomlReader& table, Plan& plan) {
+  constexpr NumberRange kTheta{.least = 45.0, .most = 89.0, .unit = "deg"};
+  constexpr NumberRange kBeside{.least = 0.01, .most = 5.0, .unit = "deg"};
+  constexpr NumberRange kWavelength{.least = 100.0, .most = 20'000.0, .unit = "nm"};
+  constexpr int kMostRepeats = 1000;
+  std::vector<Wavelength> wavelengths;
+  for (const double nm : read_values(table, "wavelength_nm", kWavelength)) wavelengths.push_back(nanometres(nm));
+  const double theta_i = table.number("theta_i_deg", kTheta);
+  const double beside = table.number_or("beside_deg", 0.1, kBeside);
+  const int repeats = static_cast<int>(table.integer_or("repeats", 3, 1, kMostRepeats));
+  if (table.has_failed()) return;
+  const double straight = 180.0 - theta_i;
+  const double along_phi = beside / std::sin(in_radians(degrees(straight)));
+  const auto add = [&](double theta_r, double phi_r) {
+    PlanPart part = crossing(table, {}, theta_i, angles(theta_r, {0.0}), angles(phi_r, {0.0}));
+    part.wavelengths = wavelengths;
+    part.repeats = repeats;
+    plan.parts.push_back(std::move(part));
+  };
+  add(straight, 180.0);
+  for (const double side : {-1.0, 1.0}) {
+    add(straight + side * beside, 180.0);
+    add(straight, 180.0 + side * along_phi);
+  }
+  plan.isotropic = false;  // its four sides are four places
+  plan.reference_mode = ReferenceMode::Absolute;
+}
+
 }  // namespace
 
 bool read_calibration(TomlReader& root, Plan& plan) {
@@ -80,8 +109,22 @@ bool read_calibration(TomlReader& root, Plan& plan) {
   if (table->has_failed()) return false;
   if (wanted.job == CalibrationJob::Linearity) wanted.order = static_cast<int>(table->integer_or("order", 2, 1, 3));
   if (wanted.job == CalibrationJob::ArmZeros) read_arm_zeros(*table, plan, wanted);
+  if (wanted.job == CalibrationJob::DirectBeam) read_direct_beam(*table, plan);
   plan.calibration = wanted;
-  return wanted.job == CalibrationJob::ArmZeros;
+  return wanted.job == CalibrationJob::ArmZeros || wanted.job == CalibrationJob::DirectBeam;
+}
+
+void refuse_targets_beside_a_beam(TomlReader& root, const Plan& plan) {
+  if (!plan.calibration || plan.calibration->job != CalibrationJob::DirectBeam || root.has_failed()) return;
+  if (plan.reference_mode != ReferenceMode::Absolute) {
+    root.table("reference")
+        .fail("mode", ErrorCode::InvalidInput, "a direct beam beside a standard", "mode = \"absolute\", or none");
+  }
+  if (plan.reference_every > Duration::zero() || plan.check_every > Duration::zero()) {
+    const std::string_view visits = plan.check_every > Duration::zero() ? "check_s" : "reference_s";
+    root.table("visits").fail(visits, ErrorCode::InvalidInput, "visits of a target that is not there",
+                              "dark_s only: straight through nothing stands on the stage");
+  }
 }
 
 void make_ladder(TomlReader& root, Plan& plan) {

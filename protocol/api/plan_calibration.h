@@ -12,8 +12,9 @@ namespace gonio::api {
 struct Plan;
 
 /// What a scan is measured for, beside its BRDF.
-enum class CalibrationJob : std::uint8_t { Linearity, ArmZeros, CheckStandard };
-inline constexpr std::array<std::string_view, 3> kCalibrationJobNames{"linearity", "arm-zeros", "check-standard"};
+enum class CalibrationJob : std::uint8_t { Linearity, ArmZeros, CheckStandard, DirectBeam, Transfer };
+inline constexpr std::array<std::string_view, 5> kCalibrationJobNames{"linearity", "arm-zeros", "check-standard",
+                                                                      "direct-beam", "transfer"};
 [[nodiscard]] constexpr std::string_view calibration_job_name(CalibrationJob job) {
   return kCalibrationJobNames[static_cast<std::size_t>(job)];
 }
@@ -25,9 +26,14 @@ struct PlanCalibration {
   Angle u_mirror;  ///< arm-zeros: of the mirror's normal against a sample's, k = 1
 };
 
-/// Reads the section, where there is one, into `plan.calibration`; of arm-zeros also the points, which are its own.
+/// Reads the section, where there is one, into `plan.calibration`; of arm-zeros and direct-beam also the points, which
+/// are the job's own. A direct beam stands against no standard: its plan's mode becomes absolute.
 /// True when it gave the points: the plan then has no [geometry]. Errors are recorded in the reader.
 [[nodiscard]] bool read_calibration(TomlReader& root, Plan& plan);
+
+/// A direct beam is read without visits of any target: mode and [visits] of its plan say nothing else. Errors are
+/// recorded in the reader.
+void refuse_targets_beside_a_beam(TomlReader& root, const Plan& plan);
 
 /// A linearity's exposures, ascending until here, climb and come down again. Errors are recorded in the reader.
 void make_ladder(TomlReader& root, Plan& plan);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace gonio::sim {
 
@@ -19,14 +20,20 @@ double carriage_of(const StageSpec& spec, Station station) {
       return spec.reference_mm;
     case Station::Trap:
       return spec.trap_mm;
+    case Station::Open:
+      return spec.open_mm.value_or(spec.trap_mm);
     case Station::Between:
       break;
   }
   return 0.5 * (spec.sample_mm + spec.reference_mm);
 }
 
-double slot_of(const Scene& scene, Wavelength wavelength) {
-  const auto distance = [&](const FilterSpec& f) { return std::abs((f.centroid - wavelength).si()); };
+// The nearest filter; into the source the nearest with an attenuator.
+double slot_of(const Scene& scene, Wavelength wavelength, Station target) {
+  const auto distance = [&](const FilterSpec& f) {
+    const bool is_wanted = f.attenuation.has_value() == (target == Station::Open);
+    return std::pair(!is_wanted, std::abs((f.centroid - wavelength).si()));
+  };
   return std::ranges::min_element(scene.filters, {}, distance)->slot;
 }
 
@@ -43,7 +50,7 @@ Exposure ReadingLevel::expose(const ReadingRequest& request) const {
   pose.positions[index_of(Axis::PhiR)] = in_degrees(request.encoders.phi_r);
   pose.positions[index_of(Axis::PhiI)] = in_degrees(request.encoders.phi_i);
   pose.positions[index_of(Axis::Carriage)] = carriage_of(scene_.stage, request.target);
-  pose.positions[index_of(Axis::FilterWheel)] = slot_of(scene_, request.wavelength);
+  pose.positions[index_of(Axis::FilterWheel)] = slot_of(scene_, request.wavelength, request.target);
   pose.last_moves.fill(request.move);
   for (const Axis axis : stage::kAllAxes) {
     const double half_play = 0.5 * scene_.stage.axes[index_of(axis)].backlash;

@@ -19,13 +19,13 @@ enum class Approach : std::uint8_t { FromBelow, FromAbove };
 /// One exposure to be made with everything at rest.
 struct ReadingRequest {
   Station target = Station::Sample;
-  bool is_dark = false;               ///< detector shutter closed
-  bool is_ambient = false;            ///< source shutter closed
-  Geometry encoders;                  ///< what the encoders say; the truth adds its errors
-  Wavelength wavelength;              ///< of a filter of the scene: the nearest is taken
-  Duration exposure{};                ///< wall time
-  double at_scene_s = 0.0;            ///< when it opens, in scene seconds from the start
-  std::uint64_t move = 1;             ///< which move brought the stage there: the key of repeat error and placing
+  bool is_dark = false;     ///< detector shutter closed
+  bool is_ambient = false;  ///< source shutter closed
+  Geometry encoders;        ///< what the encoders say; the truth adds its errors
+  Wavelength wavelength;    ///< of a filter of the scene: the nearest is taken (into the source, with an attenuator)
+  Duration exposure{};      ///< wall time
+  double at_scene_s = 0.0;  ///< when it opens, in scene seconds from the start
+  std::uint64_t move = 1;   ///< which move brought the stage there: the key of repeat error and placing
   std::uint64_t exposure_number = 1;  ///< the key of its noise: each its own
   Approach approach = Approach::FromBelow;
 };

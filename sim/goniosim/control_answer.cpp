@@ -53,6 +53,8 @@ std::string_view station_name(Station station) {
       return "reference";
     case Station::Trap:
       return "trap";
+    case Station::Open:
+      return "open";
     case Station::Between:
       break;
   }

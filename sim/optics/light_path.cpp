@@ -49,6 +49,7 @@ Station LightPath::station(double carriage_mm) const {
   const auto at = [&](double place) { return std::abs(carriage_mm - place) <= kWithinMm; };
   if (at(scene_.stage.sample_mm)) return Station::Sample;
   if (at(scene_.stage.reference_mm)) return Station::Reference;
+  if (scene_.stage.open_mm && at(*scene_.stage.open_mm)) return Station::Open;
   return at(scene_.stage.trap_mm) ? Station::Trap : Station::Between;
 }
 
@@ -129,10 +130,13 @@ LightRate LightPath::rate(const StagePose& pose) const {
   if (effects.stray) rate.ambient = effects.stray->ambient_electrons_per_s;
   const FilterSpec* filter = filter_at(pose.positions[index_of(Axis::FilterWheel)]);
   if (!pose.source_open || filter == nullptr) return rate;
-  const double white = scene_.detector.electrons_per_s * filter->transmission;
+  const double white = scene_.detector.electrons_per_s * filter->transmission * truth_.attenuation(*filter);
   if (effects.stray) rate.veil = white * effects.stray->source_share;
   const Station target = station(pose.positions[index_of(Axis::Carriage)]);
-  if (target == Station::Between || target == Station::Trap) return rate;
+  if (target == Station::Open && effects.stop) {
+    rate.target = white * direct_light(stop(), *effects.overlap, true_geometry(pose));
+  }
+  if (target != Station::Sample && target != Station::Reference) return rate;
 
   MountedView view{.geometry = folded(true_geometry(pose))};
   if (effects.mounting) {
@@ -146,6 +150,9 @@ LightRate LightPath::rate(const StagePose& pose) const {
   rate.target = white * (std::numbers::pi * light.brdf.si()) * light.mu_i * truth_.placing(pose.last_move);
   if (effects.mounting) rate.target *= view.source_near * view.source_near;
   if (effects.overlap) rate.target *= overlap_factor(target, view);
+  if (effects.stop) {
+    rate.target *= stop_solid_angle(stop(), effects.overlap->spot_radius, g) / stop_solid_angle(stop(), {}, Geometry{});
+  }
   if (reflected_) {
     const double share = target == Station::Sample ? reflected_->sample(g.theta_i) : reflected_->reference(g.theta_i);
     rate.veil += white * effects.stray->internal_share * share * light.mu_i;

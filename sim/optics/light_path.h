@@ -5,6 +5,7 @@
 
 #include "protocol/stage/axis.h"
 #include "sim/optics/cone_average.h"
+#include "sim/optics/direct_light.h"
 #include "sim/optics/mounting.h"
 #include "sim/optics/polarised_light.h"
 #include "sim/optics/reflected_share.h"
@@ -25,11 +26,12 @@ struct StagePose {
 };
 
 /// What stands before the detector.
-enum class Station : std::uint8_t { Between, Sample, Reference, Trap };
+enum class Station : std::uint8_t { Between, Sample, Reference, Trap, Open };
 
 /// Light on the detector, or its integral over time: electrons (per second of scene time), before nonlinearity.
 struct LightRate {
-  double target = 0.0;   ///< of one lit pixel, for lamp output 1: from the target into the field of view
+  double target = 0.0;   ///< of one lit pixel, for lamp output 1: from the target into the field of view, or straight
+                         ///< through
   double veil = 0.0;     ///< of every pixel, for lamp output 1: stray light of the source and of the detector's inside
   double ambient = 0.0;  ///< of every pixel, whatever the lamp gives
   LightRate& operator+=(const LightRate& other);
@@ -49,7 +51,8 @@ class LightPath {
 
   /// No light with a closed detector shutter; only the ambient with a closed source shutter, between carriage stations,
   /// or with either arm below the horizon, where source stray light passes too, as before the black trap; none of the
-  /// lamp's between filters.
+  /// lamp's between filters. At the open station the lamp itself, where the detector looks into it and the scene says
+  /// what its stop takes in.
   [[nodiscard]] LightRate rate(const StagePose& pose) const;
 
   [[nodiscard]] Station station(double carriage_mm) const;
@@ -65,6 +68,7 @@ class LightPath {
  private:
   [[nodiscard]] ConeAverage seen(Station target, const Geometry& g, Wavelength wavelength) const;
   [[nodiscard]] double overlap_factor(Station target, const MountedView& view) const;
+  [[nodiscard]] Stop stop() const { return {.radius = truth_.stop_radius(), .distance = truth_.stop_distance()}; }
 
   const Scene& scene_;
   const Truth& truth_;

@@ -25,6 +25,8 @@ enum class Purpose : std::uint32_t {
   OffsetWander = 22,     ///< counter: component
   Speckle = 23,          ///< counter: place
   PixelPattern = 24,
+  Stop = 25,        ///< counter: radius, distance
+  Attenuator = 26,  ///< counter: slot
 };
 
 /// A stream of chance that depends on nothing but (seed, purpose, counter): how often one effect draws never shifts

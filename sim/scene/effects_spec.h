@@ -22,6 +22,13 @@ struct OverlapSpec {
   std::optional<Length> reference_radius;  ///< none: endless
 };
 
+/// The round stop that bounds what the detector takes in: straight through, with nothing in the way, all of the beam
+/// passes it. As its certificate says; the truth is a draw from both u (k = 1).
+struct StopSpec {
+  Measured<Length> radius;
+  Measured<Length> distance;  ///< from the arms' centre
+};
+
 /// How one target stands on its carriage: the normal leans by `lean_0` towards phi = 0 and by `lean_90` towards phi =
 /// 90 deg, the surface lies `height` above the arms' centre.
 struct MountSpec {
@@ -91,6 +98,7 @@ struct SpeckleSpec {
 struct EffectsSpec {
   std::optional<ConeSpec> cones;
   std::optional<OverlapSpec> overlap;
+  std::optional<StopSpec> stop;  ///< only beside an overlap, which says how wide the beam is
   std::optional<MountingSpec> mounting;
   stage::PerAxis<std::optional<PeriodicError>> encoder{};  ///< of the four angles only
   std::optional<PolarisationSpec> polarisation;

@@ -67,11 +67,15 @@ std::string stage_section(const Scene& scene, const WireAddresses& addresses) {
   if (scene.stage.turning_sample) text += kinematics_section(*scene.stage.turning_sample);
   text += fmt::format("\n[stage.carriage]\nsample_mm = {}\nreference_mm = {}\ntrap_mm = {}\n", scene.stage.sample_mm,
                       scene.stage.reference_mm, scene.stage.trap_mm);
+  if (scene.stage.open_mm) text += fmt::format("open_mm = {}\n", *scene.stage.open_mm);
   for (const FilterSpec& filter : scene.filters) {
     text += fmt::format(
         "\n[[stage.filters]]\nslot = {}\ncentroid_nm = {:.10g}\nfwhm_nm = {:.10g}\nout_of_band_fraction = {}\nside = "
         "\"detector\"\n",
         filter.slot, in_nanometres(filter.centroid), in_nanometres(filter.fwhm), filter.out_of_band_fraction);
+    if (!filter.attenuation) continue;
+    text += fmt::format("attenuation = {:.10g}\nu_attenuation = {:.10g}\n", filter.attenuation->value,
+                        filter.attenuation->u);
   }
   text +=
       "\n[stage.shadow]\ndetector_head_radius_mm = 20.0\nsource_head_radius_mm = 20.0\ndetector_arm_mm = 500.0\n"
@@ -146,6 +150,16 @@ std::string beams_section(const Scene& scene) {
   return text;
 }
 
+std::string absolute_section(const Scene& scene) {
+  if (!scene.effects.stop) return {};
+  const StopSpec& stop = *scene.effects.stop;
+  return fmt::format(
+      "\n[absolute]\nstop_radius_mm = {:.10g}\nu_stop_radius_mm = {:.10g}\nstop_distance_mm = "
+      "{:.10g}\nu_stop_distance_mm = {:.10g}\n",
+      in_millimetres(stop.radius.value), in_millimetres(stop.radius.u), in_millimetres(stop.distance.value),
+      in_millimetres(stop.distance.u));
+}
+
 }  // namespace
 
 std::string instrument_toml(const Scene& scene, const WireAddresses& addresses) {
@@ -154,7 +168,7 @@ std::string instrument_toml(const Scene& scene, const WireAddresses& addresses) 
              "[instrument]\nname = \"simulated: {0}\"\n",
              scene.name) +
          stage_section(scene, addresses) + detector_section(scene, addresses) + radiometer_monitor_section(scene) +
-         uncertainty_sections(scene) + beams_section(scene);
+         uncertainty_sections(scene) + beams_section(scene) + absolute_section(scene);
 }
 
 }  // namespace gonio::sim

@@ -35,6 +35,14 @@ OverlapSpec read_overlap(TomlReader t) {
   return overlap;
 }
 
+StopSpec read_stop(TomlReader t) {
+  constexpr NumberRange kDoubt{.least = 0.0, .most = 100.0, .unit = "mm"};
+  constexpr NumberRange kFar{.least = 100.0, .most = 1e5, .unit = "mm"};
+  return {
+      .radius = {millimetres(t.number("radius_mm", kSize)), millimetres(t.number_or("u_radius_mm", 0.0, kDoubt))},
+      .distance = {millimetres(t.number("distance_mm", kFar)), millimetres(t.number_or("u_distance_mm", 0.0, kDoubt))}};
+}
+
 MountSpec read_mount(TomlReader t) {
   constexpr double kMostLean = 20.0;
   MountSpec mount;
@@ -136,6 +144,10 @@ void read_effects(TomlReader table, Scene& scene) {
   EffectsSpec& effects = scene.effects;
   if (auto t = table.optional_table("cones")) effects.cones = read_cones(*t);
   if (auto t = table.optional_table("overlap")) effects.overlap = read_overlap(*t);
+  if (auto t = table.optional_table("stop")) effects.stop = read_stop(*t);
+  if (effects.stop && !effects.overlap) {
+    table.fail("stop", ErrorCode::MissingKey, "nothing says how wide the beam is", "[effects.overlap] beside it");
+  }
   if (auto t = table.optional_table("mounting")) effects.mounting = read_mounting(*t);
   if (auto t = table.optional_table("encoder")) read_encoder(*t, effects);
   if (auto t = table.optional_table("backlash")) read_backlash(*t, scene.stage);

@@ -106,6 +106,7 @@ void read_stage(TomlReader t, StageSpec& spec) {
   spec.sample_mm = carriage.number("sample_mm", on_the_rail);
   spec.reference_mm = carriage.number("reference_mm", on_the_rail);
   spec.trap_mm = carriage.number("trap_mm", on_the_rail);
+  spec.open_mm = carriage.optional_number("open_mm", on_the_rail);
 }
 
 void read_angles(TomlReader t, AngleSpec& angles) {
@@ -163,6 +164,9 @@ FilterSpec read_filter(TomlReader t) {
   filter.fwhm = nanometres(t.number("fwhm_nm", kPositive));
   filter.transmission = t.number_or("transmission", 1.0, kShare);
   filter.out_of_band_fraction = t.number_or("out_of_band_fraction", 0.0, kShare);
+  if (const auto passed = t.optional_number("attenuation", {.least = 1e-9, .most = 1.0})) {
+    filter.attenuation = Measured<double>{*passed, t.number_or("u_attenuation", 0.0, {.least = 0.0, .most = *passed})};
+  }
   return filter;
 }
 

@@ -28,6 +28,8 @@ struct FilterSpec {
   Wavelength fwhm;
   double transmission = 1.0;
   double out_of_band_fraction = 0.0;  ///< told to the daemon; the scene's surfaces are grey, so it changes no signal
+  /// An attenuator that stands with it: light passed / light, as its certificate says; the truth is a draw from u.
+  std::optional<Measured<double>> attenuation{};
 };
 
 /// The lamp and its monitor. Relative numbers; an effect of 0 is off. Times are scene time.
@@ -88,8 +90,9 @@ struct StageSpec {
   double sample_mm = 0.0;
   double reference_mm = 120.0;
   double trap_mm = 240.0;
-  double shutter_s = 0.0;          ///< travel; light passes when it is fully open
-  double following_error_s = 0.5;  ///< a blocked axis is noticed after so long
+  std::optional<double> open_mm{};  ///< a place of the carriage where nothing stands in the beam
+  double shutter_s = 0.0;           ///< travel; light passes when it is fully open
+  double following_error_s = 0.5;   ///< a blocked axis is noticed after so long
   double heartbeat_timeout_wall_s = 2.0;
   stage::RegisterMap registers;                     ///< our own
   std::optional<stage::DriveStageMap> drives;       ///< when set, the stage is one of drives; scales in wall time

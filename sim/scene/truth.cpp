@@ -46,7 +46,12 @@ Truth::Truth(const Scene& scene)
       reference_(scene.reference),
       amplitudes_(scene.reference.modes.size(), 0.0),
       u_repeat_(scene.angles.u_repeat),
-      u_placing_(scene.lamp.u_reproducibility) {
+      u_placing_(scene.lamp.u_reproducibility),
+      draws_errors_(scene.draws_errors) {
+  if (scene.effects.stop) {
+    stop_radius_ = scene.effects.stop->radius.value;
+    stop_distance_ = scene.effects.stop->distance.value;
+  }
   if (!scene.draws_errors) return;
   const auto normal = [&](Purpose purpose, std::uint64_t counter) { return Chance(seed_, purpose, counter).normal(); };
   const auto zero = [&](Axis axis, Angle u) {
@@ -57,6 +62,10 @@ Truth::Truth(const Scene& scene)
   zero(Axis::PhiR, scene.angles.u_zero_phi_r);
   nonlinearity_ = scene.detector.u_linearity * normal(Purpose::Linearity, 0);
   certificate_error_ = normal(Purpose::Certificate, 0);
+  if (scene.effects.stop) {
+    stop_radius_ += scene.effects.stop->radius.u * normal(Purpose::Stop, 0);
+    stop_distance_ += scene.effects.stop->distance.u * normal(Purpose::Stop, 1);
+  }
   for (std::size_t k = 0; k < amplitudes_.size(); ++k) {
     amplitudes_[k] = reference_.modes[k].u * normal(Purpose::ShapeMode, k);
   }
@@ -89,6 +98,13 @@ Angle Truth::repeat_error(Axis axis, std::uint64_t move) const {
 double Truth::placing(std::uint64_t move) const {
   if (u_placing_ == 0.0) return 1.0;
   return 1.0 + u_placing_ * Chance(seed_, Purpose::Placing, move).normal();
+}
+
+double Truth::attenuation(const FilterSpec& filter) const {
+  if (!filter.attenuation) return 1.0;
+  const double error =
+      draws_errors_ ? Chance(seed_, Purpose::Attenuator, static_cast<std::uint64_t>(filter.slot)).normal() : 0.0;
+  return filter.attenuation->value + filter.attenuation->u * error;
 }
 
 }  // namespace gonio::sim

@@ -31,6 +31,11 @@ class Truth {
   [[nodiscard]] double placing(std::uint64_t move) const;
   /// net' = net (1 + this * net / full scale).
   [[nodiscard]] double nonlinearity() const { return nonlinearity_; }
+  /// The detector's stop as it is; the scene must have one.
+  [[nodiscard]] Length stop_radius() const { return stop_radius_; }
+  [[nodiscard]] Length stop_distance() const { return stop_distance_; }
+  /// The part of the light that what stands in this slot beside the filter passes; 1 without an attenuator.
+  [[nodiscard]] double attenuation(const FilterSpec& filter) const;
 
  private:
   std::uint64_t seed_;
@@ -44,6 +49,9 @@ class Truth {
   Angle u_repeat_;
   double u_placing_ = 0.0;
   double nonlinearity_ = 0.0;
+  Length stop_radius_;
+  Length stop_distance_;
+  bool draws_errors_ = true;
 };
 
 /// Certificate and uncertainty at a wavelength, linear between entries, the nearest entry outside of them.

@@ -29,10 +29,7 @@ class JobBench {
     reading.point_index = point;
     for (const double exposure_s : exposures_s) {
       const sim::ReadingRequest request{
-          .target = target == Target::Sample ? sim::Station::Sample : sim::Station::Reference,
-          .encoders = g,
-          .wavelength = kWavelength,
-          .move = moves_};
+          .target = station_of(target, g), .encoders = g, .wavelength = kWavelength, .move = moves_};
       RawFrame frame = expose(request, exposure_s);
       if (frame.region.saturated == 0) reading.frames.push_back(frame);
     }
@@ -53,6 +50,11 @@ class JobBench {
   static inline const Wavelength kWavelength = nanometres(568.0);
 
  private:
+  // Below the surface the detector looks into the source, past all targets.
+  static sim::Station station_of(Target target, const Geometry& g) {
+    if (g.theta_r > degrees(90.0)) return sim::Station::Open;
+    return target == Target::Sample ? sim::Station::Sample : sim::Station::Reference;
+  }
   RawReading begin(Target target) {
     ++readings_;
     return {.id = readings_,

@@ -165,6 +165,34 @@ TEST(Instrument, FindsTheNearestFilterWithinItsBand) {
   EXPECT_EQ(filter_for(instrument, 600_nm), nullptr);
 }
 
+TEST(Instrument, TakesAFilterWithAnAttenuatorOnlyWhereOneIsAskedFor) {
+  Instrument instrument;
+  instrument.filters = {{.slot = 1, .centroid = 568_nm, .fwhm = 10_nm},
+                        {.slot = 2, .centroid = 568_nm, .fwhm = 10_nm, .attenuation = Measured<double>{1e-3, 2e-6}}};
+
+  EXPECT_EQ(filter_for(instrument, 568_nm)->slot, 1);
+  EXPECT_EQ(attenuated_filter_for(instrument, 568_nm)->slot, 2);
+  EXPECT_EQ(attenuated_filter_for(instrument, 600_nm), nullptr);
+}
+
+TEST(Instrument, ReadsWhatAnAbsoluteMeasurementRestsOn) {
+  std::string text = with(whole_text(), "trap_mm = 240.0\n", "trap_mm = 240.0\nopen_mm = 180.0\n");
+  text = with(text, "side = \"detector\" ", "attenuation = 1e-3\nu_attenuation = 2e-6\nside = \"detector\" ");
+  text +=
+      "\n[absolute]\nstop_radius_mm = 10.0\nu_stop_radius_mm = 0.01\nstop_distance_mm = 500.0\n"
+      "u_stop_distance_mm = 0.25\n";
+
+  const Instrument instrument = read(text);
+
+  ASSERT_TRUE(instrument.model.absolute && instrument.carriage.open && instrument.filters.at(0).attenuation);
+  EXPECT_TRUE(instrument.model.absolute->beams.empty()) << "those are found";
+  EXPECT_NEAR(in_millimetres(instrument.model.absolute->aperture_radius.u), 0.01, 1e-12);
+  EXPECT_NEAR(in_millimetres(instrument.model.absolute->aperture_distance.value), 500.0, 1e-9);
+  EXPECT_NEAR(in_millimetres(*instrument.carriage.open), 180.0, 1e-9);
+  EXPECT_EQ(instrument.filters.at(0).attenuation->u, 2e-6);
+  EXPECT_FALSE(read(whole_text()).model.absolute) << "without the section no scan is absolute";
+}
+
 TEST(Instrument, AMisspeltKeyNamesLineAndNearestName) {
   const Error error = error_of("frames_at_most", "frame_at_most");
 

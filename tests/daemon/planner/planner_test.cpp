@@ -76,6 +76,51 @@ TEST(Planner, MarksPointsInTheShadowAndOrdersThemLast) {
   }
 }
 
+// An arm that reaches below the surface, a carriage place where nothing stands in the beam, an attenuator in slot 2.
+Instrument instrument_for_a_direct_beam() {
+  Instrument instrument = bench_instrument();
+  instrument.stage.axes[stage::index_of(Axis::ThetaR)].high = 105.0;
+  instrument.carriage.open = millimetres(180.0);
+  instrument.filters.push_back({.slot = 2,
+                                .centroid = nanometres(568.0),
+                                .fwhm = nanometres(10.0),
+                                .attenuation = Measured<double>{1e-3, 2e-6}});
+  return instrument;
+}
+
+TEST(Planner, LooksIntoTheSourceOnlyThroughTheAttenuatorAtTheOpenPlace) {
+  const Instrument instrument = instrument_for_a_direct_beam();
+  const Geometry straight{.theta_i = degrees(80.0), .phi_i = {}, .theta_r = degrees(100.0), .phi_r = degrees(180.0)};
+  const Geometry above{.theta_i = degrees(80.0), .phi_i = {}, .theta_r = degrees(10.0), .phi_r = degrees(180.0)};
+
+  const auto into = axis_targets(straight, nanometres(568.0), instrument, home_position(instrument));
+  const auto onto = axis_targets(above, nanometres(568.0), instrument, home_position(instrument));
+
+  ASSERT_TRUE(into && onto);
+  EXPECT_EQ((*into)[stage::index_of(Axis::FilterWheel)], 2.0);
+  EXPECT_EQ((*onto)[stage::index_of(Axis::FilterWheel)], 1.0) << "never for a target";
+  EXPECT_EQ(in_millimetres(carriage_place(instrument, calibration::Target::Sample, straight)), 180.0);
+  EXPECT_EQ(in_millimetres(carriage_place(instrument, calibration::Target::Sample, above)), 0.0);
+  EXPECT_EQ(in_millimetres(carriage_place(instrument, calibration::Target::Reference, above)), 120.0);
+}
+
+TEST(Planner, RefusesALookIntoTheSourceWithoutAttenuatorOrOpenPlace) {
+  const api::Plan straight = bench_plan({80}, {100}, {180});
+  Instrument without_attenuator = instrument_for_a_direct_beam();
+  without_attenuator.filters.pop_back();
+  Instrument without_open_place = instrument_for_a_direct_beam();
+  without_open_place.carriage.open.reset();
+
+  const auto bare = expand(straight, without_attenuator);
+  const auto covered = expand(straight, without_open_place);
+
+  ASSERT_FALSE(bare || covered);
+  EXPECT_EQ(bare.error().code, ErrorCode::InvalidInput);
+  EXPECT_NE(describe(bare.error()).find("attenuator"), std::string::npos) << describe(bare.error());
+  EXPECT_NE(describe(covered.error()).find("open_mm"), std::string::npos) << describe(covered.error());
+  EXPECT_TRUE(expand(straight, instrument_for_a_direct_beam()));
+}
+
 TEST(Planner, RefusesAPlanWithEveryPointBlocked) {
   const auto planned = expand(bench_plan({30}, {30}, {0}), bench_instrument());
 

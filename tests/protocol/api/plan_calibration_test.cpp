@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "protocol/api/plan.h"
 
@@ -42,6 +44,19 @@ theta_i_deg = [20, 40, 60]
 half_width_deg = 0.4
 step_deg = 0.1
 u_mirror_deg = 0.01
+[reference]
+standard = "SRT"
+)";
+
+constexpr std::string_view kBeam = R"([scan]
+name = "beam"
+sample = "nothing"
+[calibration]
+job = "direct-beam"
+wavelength_nm = [480, 568]
+theta_i_deg = 80
+beside_deg = 0.2
+repeats = 4
 [reference]
 standard = "SRT"
 )";
@@ -108,6 +123,39 @@ TEST(PlanCalibration, ArmZerosTakesNoGeometryOfItsAuthorsAndThreeAnglesAtLeast) 
   EXPECT_THAT(describe(error_of(changed(kMirror, "[20, 40, 60]", "[20, 40]"))), HasSubstr("three at least"));
   EXPECT_EQ(error_of(changed(kMirror, "u_mirror_deg = 0.01\n", "")).code, ErrorCode::MissingKey)
       << "nobody knows it but the operator";
+}
+
+TEST(PlanCalibration, ADirectBeamIsReadStraightThroughAndOnFourSidesOfItAgainstNoStandard) {
+  const auto plan = parse_plan(kBeam, "job.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_EQ(plan->reference_mode, ReferenceMode::Absolute);
+  EXPECT_FALSE(plan->isotropic);
+  ASSERT_EQ(plan->parts.size(), 5U);
+  std::vector<std::pair<double, double>> places;
+  for (const PlanPart& part : plan->parts) {
+    EXPECT_NEAR(in_degrees(part.theta_i.at(0)), 80.0, 1e-12);
+    EXPECT_EQ(part.wavelengths.size(), 2U);
+    EXPECT_EQ(part.repeats, 4);
+    const auto& place = std::get<ProductShape>(part.shape);
+    places.emplace_back(in_degrees(place.theta_r.at(0)), in_degrees(place.phi_r.at(0)));
+  }
+  const double along_phi = 0.2 / std::sin(in_radians(degrees(100.0)));
+  EXPECT_NEAR(places[0].first, 100.0, 1e-9);
+  EXPECT_NEAR(places[0].second, 180.0, 1e-9);
+  EXPECT_NEAR(places[1].first, 99.8, 1e-9);
+  EXPECT_NEAR(places[2].second, 180.0 - along_phi, 1e-8);
+  EXPECT_NEAR(places[3].first, 100.2, 1e-9);
+  EXPECT_NEAR(places[4].second, 180.0 + along_phi, 1e-8);
+}
+
+TEST(PlanCalibration, ADirectBeamTakesNoTargetBesideIt) {
+  const std::string beam(kBeam);
+
+  EXPECT_EQ(error_of(beam + "mode = \"same-geometry\"\n").where->field, "reference.mode");
+  EXPECT_EQ(error_of(beam + "[visits]\nreference_s = 60\n").where->field, "visits.reference_s");
+  EXPECT_EQ(error_of(beam + "[visits]\ncheck_s = 60\n").where->field, "visits.check_s");
+  EXPECT_TRUE(parse_plan(beam + "mode = \"absolute\"\n[visits]\ndark_s = 60\n", "job.toml"));
 }
 
 TEST(PlanCalibration, NamesTheJobsThatThereAre) {
