@@ -60,7 +60,7 @@ std::vector<Part> joined(std::vector<std::vector<Part>> parts) {
   return all;
 }
 
-std::optional<std::int64_t> single_integer(Statement& query) {
+std::optional<std::int64_t> integer_or_none(Statement& query) {
   std::optional<std::int64_t> found;
   while (query.next()) {
     if (!query.is_null(0)) found = query.integer(0);
@@ -102,20 +102,20 @@ std::vector<PlannedPoint> read_planned(Database& database, ScanId scan, IdRange 
 
 IdRange points_of(Database& database, ScanId scan) {
   Statement& query = database.statement("SELECT max(point_index) FROM point WHERE scan_id = ?");
-  return {0, single_integer(query.bind(scan)).value_or(-1) + 1};
+  return {0, integer_or_none(query.bind(scan)).value_or(-1) + 1};
 }
 
 IdRange attempts_of(Database& database, ScanId scan) {
   Statement& first = database.statement("SELECT min(attempt_id) FROM attempt WHERE scan_id = ?");
   Statement& last = database.statement("SELECT max(attempt_id) FROM attempt WHERE scan_id = ?");
-  const std::int64_t from = single_integer(first.bind(scan)).value_or(0);
-  return {from, single_integer(last.bind(scan)).value_or(from - 1) + 1};
+  const std::int64_t from = integer_or_none(first.bind(scan)).value_or(0);
+  return {from, integer_or_none(last.bind(scan)).value_or(from - 1) + 1};
 }
 
 std::int64_t first_reading_from(Database& database, std::int64_t attempt, std::int64_t otherwise) {
   Statement& query =
       database.statement("SELECT reading_id FROM reading WHERE attempt_id >= ? ORDER BY attempt_id, sequence LIMIT 1");
-  return single_integer(query.bind(attempt)).value_or(otherwise);
+  return integer_or_none(query.bind(attempt)).value_or(otherwise);
 }
 
 // Rows are written in the order of their attempts and visits, and those of one attempt together: what lies between the
@@ -132,7 +132,7 @@ std::vector<IdRange> reading_parts(Database& database, ScanId scan) {
   if (attempts.from == attempts.to) return {all};
   Statement& last = database.statement(
       "SELECT reading_id FROM reading WHERE attempt_id < ? ORDER BY attempt_id DESC, sequence DESC LIMIT 1");
-  const std::int64_t end = std::max(all.to, single_integer(last.bind(attempts.to)).value_or(-1) + 1);
+  const std::int64_t end = std::max(all.to, integer_or_none(last.bind(attempts.to)).value_or(-1) + 1);
   const std::int64_t begin = first_reading_from(database, attempts.from, end);
   std::vector<IdRange> parts;
   std::int64_t from = all.to == 0 ? begin : std::min(all.from, begin);
@@ -292,7 +292,7 @@ void drop_superseded(std::vector<RawReading>& readings, std::size_t points) {
 
 bool has_reopened(Database& database, ScanId scan) {
   Statement& query = database.statement("SELECT EXISTS (SELECT 1 FROM reopening WHERE scan_id = ?)");
-  return single_integer(query.bind(scan)).value_or(0) != 0;
+  return integer_or_none(query.bind(scan)).value_or(0) != 0;
 }
 
 // Of exposures that the plan states some may have been saturated: their frames are kept and not used. A probe for an
