@@ -107,7 +107,7 @@ class Stopwatch {
 Run measure(const std::string& store, long points) {
   const long across = points < 100'000 ? 20 : 200;
   const long down = points / across;
-  test::ScanRig rig(test::bench_instrument(), store);
+  daemon::test::ScanRig rig(daemon::test::bench_instrument(), store);
   Stopwatch watch(2 * points);
   rig.on_event = [&watch](const EventRecord& event) {
     if (event.kind == "scan-running") watch.begin();
@@ -115,9 +115,9 @@ Run measure(const std::string& store, long points) {
   };
   const auto began = SteadyClock::now();
   api::Plan plan =
-      test::bench_plan({30}, steps(40.0, 0.2, across), steps(10.0, 100.0 / static_cast<double>(down), down));
+      daemon::test::bench_plan({30}, steps(40.0, 0.2, across), steps(10.0, 100.0 / static_cast<double>(down), down));
   plan.target_snr = 100.0;
-  const CommandId id = rig.command(SubmitScan{test::new_scan(plan)});
+  const CommandId id = rig.command(SubmitScan{daemon::test::new_scan(plan)});
   while (rig.reply_to(id) == nullptr && rig.step()) {
   }
   Run run{.points = points, .submit_s = std::chrono::duration<double>(SteadyClock::now() - began).count()};
