@@ -211,8 +211,8 @@ Result<FoundValues> fit_direct_beam(const ScanReadings& scan, const InstrumentMo
   FoundValues found;
   for (const auto& [picometres, at_wavelength] : *readings) {
     const double nm = 1e-3 * static_cast<double>(picometres);
-    const auto attenuator = std::ranges::find_if(attenuators, [&](const Attenuator& one) {
-      return std::llround(in_nanometres(one.wavelength) * 1e3) == picometres;
+    const auto attenuator = std::ranges::find_if(attenuators, [wanted = picometres](const Attenuator& one) {
+      return std::llround(in_nanometres(one.wavelength) * 1e3) == wanted;
     });
     if (attenuator == attenuators.end()) return failure(no_beam(nm, "no attenuator", "one, with its certificate"));
     const Result<FoundBeam> beam = beam_of(nm, at_wavelength, instrument, attenuator->passed);
