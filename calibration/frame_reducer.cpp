@@ -8,9 +8,10 @@
 namespace gonio::calibration {
 namespace {
 
-// Rows are summed some at a time, and meanwhile as many of the next are called from memory: chords begin anew in each
-// row, which a processor's own prefetcher does not foresee. All of them stay in the nearest cache.
-constexpr std::size_t kPixelsAtOnce = 4096;
+// While a row is summed, the row so many pixels further on is called from memory: chords begin anew in each row, which
+// a processor's own prefetcher does not foresee. With maps as many pixels are summed, then mapped: rows at hand and
+// rows to come stay in the nearest cache.
+constexpr std::size_t kPixelsAhead = 4096;
 
 Error refusal(ErrorCode code, std::string seen, std::string limit) {
   return {
@@ -54,6 +55,7 @@ Result<FrameReducer> FrameReducer::prepare(int width, int height, std::uint16_t 
                                            const std::optional<DetectorMaps>& maps, const DetectorModel& noise) {
   GONIO_TRY(check_mask(width, height, mask));
   FrameReducer reducer(width, height, full_scale);
+  std::size_t longest = 1;
   for (int y = 0; y < height; ++y) {
     const double dy = y - mask.centre_y_px;
     const double half_width2 = mask.radius_px * mask.radius_px - dy * dy;
@@ -66,7 +68,9 @@ Result<FrameReducer> FrameReducer::prepare(int width, int height, std::uint16_t 
     reducer.chords_.push_back(
         {static_cast<std::size_t>(std::ptrdiff_t{y} * width + first), length, reducer.pixels_inside_});
     reducer.pixels_inside_ += length;
+    longest = std::max(longest, length);
   }
+  reducer.rows_ahead_ = std::max<std::size_t>(kPixelsAhead / longest, 1);
   if (maps) {
     GONIO_TRY(check_size(*maps, width, height));
     GONIO_TRY(reducer.take_maps(*maps, full_scale, noise));
@@ -130,14 +134,14 @@ Result<ReducedFrame> FrameReducer::reduce(std::span<const std::uint16_t> pixels,
   std::vector<std::span<const std::uint16_t>> rows;
   rows.reserve(chords_.size());
   for (const Chord& chord : chords_) rows.push_back(pixels.subspan(chord.first, chord.length));
-  for (std::size_t from = 0; from < rows.size();) {
-    const std::size_t some = std::min(std::max<std::size_t>(kPixelsAtOnce / rows[from].size(), 1), rows.size() - from);
-    const PixelRows later = PixelRows(rows).subspan(from + some);
-    summer_.add(PixelRows(rows).subspan(from, some), later.first(std::min(some, later.size())), sums);
-    for (std::size_t k = from; has_maps_ && k < from + some; ++k) {
+  const std::size_t at_once = has_maps_ ? rows_ahead_ : rows.size();
+  for (std::size_t from = 0; from < rows.size(); from += at_once) {
+    const std::size_t end = std::min(from + at_once, rows.size());
+    const PixelRows soon = PixelRows(rows).subspan(std::min(from + rows_ahead_, rows.size()));
+    summer_.add(PixelRows(rows).subspan(from, end - from), soon, sums);
+    for (std::size_t k = from; has_maps_ && k < end; ++k) {
       add_mapped(row_of(rows[k], chords_[k]), static_cast<float>(exposure_s), mapped);
     }
-    from += some;
   }
   for (const std::size_t at : bad_) summer_.remove(pixels[at], sums);
   ReducedFrame frame{.raw = moments_of(sums), .bad = static_cast<std::uint32_t>(bad_.size()), .reduced = {}};

@@ -25,10 +25,10 @@ struct ReducedFrame {
   std::optional<ReducedMean> reduced;
 };
 
-/// Condenses frames of one size to the statistics of the aperture, prepared once. One pass over a frame: some rows of
-/// the aperture are summed raw, exactly, and then through the maps while they are near. Same bits whenever the same
-/// frame comes, on every machine: integer sums, and floating ones in a fixed order without fused operations. Immutable;
-/// threads: any.
+/// Condenses frames of one size to the statistics of the aperture, prepared once. One pass over a frame: with
+/// maps some rows of the aperture are summed raw, exactly, and then through the maps while they are near. Same bits
+/// whenever the same frame comes, on every machine: integer sums, and floating ones in a fixed order without fused
+/// operations. Immutable; threads: any.
 class FrameReducer {
  public:
   /// Without maps: raw moments only. Pixels at `full_scale` or above count as saturated.
@@ -69,6 +69,7 @@ class FrameReducer {
   std::vector<Chord> chords_;
   std::vector<std::size_t> bad_;  ///< in the frame
   std::size_t pixels_inside_ = 0;
+  std::size_t rows_ahead_ = 1;
   bool has_maps_ = false;
   bool is_curved_ = false;
   std::vector<float> offset_, rate_, weight_, curve_1_, curve_2_;  ///< chord after chord; weight: 1 / flat, 0 if bad

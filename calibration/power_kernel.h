@@ -11,8 +11,9 @@ namespace gonio::calibration {
 /// One way to add rows of pixels to the sums. All ways add the same integers.
 struct PowerKernel {
   std::string_view name;
-  /// Pixels at `full_scale` or above count as saturated. `soon` are rows that are going to be added later: they are
-  /// called from memory while these are summed, and may be none. Any length, any alignment. Threads: any.
+  /// Pixels at `full_scale` or above count as saturated. `soon` are rows that are going to be added later: the first is
+  /// called from memory while the first of `rows` is summed, the second with the second; there may be none, or more
+  /// than rows. Any length, any alignment. Threads: any.
   void (*add)(PixelRows rows, PixelRows soon, std::uint16_t full_scale, PowerSums& sums) = nullptr;
 };
 

@@ -11,9 +11,7 @@ namespace {
 
 struct Avx2 {
   using Words [[gnu::vector_size(32)]] = std::uint16_t;
-  using SignedWords [[gnu::vector_size(32)]] = std::int16_t;
   using Sums [[gnu::vector_size(32)]] = std::uint32_t;
-  using SignedSums [[gnu::vector_size(32)]] = std::int32_t;
 
   [[gnu::always_inline]] static __m256i plain(Words words) { return reinterpret_cast<__m256i>(words); }
   [[gnu::always_inline]] static Words mulhrs(Words a, Words b) {
@@ -23,6 +21,9 @@ struct Avx2 {
     return reinterpret_cast<Sums>(_mm256_madd_epi16(plain(a), plain(b)));
   }
   [[gnu::always_inline]] static Sums add_madd(Sums to, Words a, Words b) { return to + madd(a, b); }
+  [[gnu::always_inline]] static Words count_less(Words counts, Words a, Words b) {
+    return counts - reinterpret_cast<Words>(_mm256_cmpgt_epi16(plain(b), plain(a)));
+  }
 };
 
 }  // namespace

@@ -11,9 +11,7 @@ namespace {
 
 struct Avx512 {
   using Words [[gnu::vector_size(64)]] = std::uint16_t;
-  using SignedWords [[gnu::vector_size(64)]] = std::int16_t;
   using Sums [[gnu::vector_size(64)]] = std::uint32_t;
-  using SignedSums [[gnu::vector_size(64)]] = std::int32_t;
 
   [[gnu::always_inline]] static __m512i plain(Words words) { return reinterpret_cast<__m512i>(words); }
   [[gnu::always_inline]] static Words mulhrs(Words a, Words b) {
@@ -24,6 +22,10 @@ struct Avx512 {
   }
   [[gnu::always_inline]] static Sums add_madd(Sums to, Words a, Words b) {
     return reinterpret_cast<Sums>(_mm512_dpwssd_epi32(reinterpret_cast<__m512i>(to), plain(a), plain(b)));
+  }
+  [[gnu::always_inline]] static Words count_less(Words counts, Words a, Words b) {
+    return reinterpret_cast<Words>(_mm512_mask_add_epi16(plain(counts), _mm512_cmplt_epi16_mask(plain(a), plain(b)),
+                                                         plain(counts), _mm512_set1_epi16(1)));
   }
 };
 

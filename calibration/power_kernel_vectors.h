@@ -13,7 +13,8 @@
 //     d^4 = E^2 + 2^30 E + 2^58,         E^2 = 2^30 high^2 + 2^16 high low + low^2
 //
 // Products of 16 bits are added in pairs by one instruction (madd). Two vectors' pairs of d high and d low, four
-// vectors' of the others, fit 32 bits; then they go into a SplitSum.
+// vectors' of the others, fit 32 bits; then they go into a SplitSum. All sums stay in registers from row to row.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -25,7 +26,6 @@ namespace {
 
 // So few that the sums below, over all lanes, stay inside of 32 bits: |d| 2^15 in each of 2^15 pixels.
 constexpr std::size_t kMostPixels = 32768;
-constexpr std::size_t kMostOfARow = 16384;
 constexpr std::size_t kCacheLine = 32;  // pixels
 constexpr std::int64_t k2To15 = 1 << 15, k2To16 = 1 << 16, k2To29 = 1 << 29, k2To30 = 1 << 30;
 
@@ -47,15 +47,18 @@ inline void put(const Totals& of, std::size_t pixels, std::size_t fill, std::uin
   sums.saturated += lanes - of.below - (full_scale <= kPowerShift ? static_cast<std::int64_t>(fill) : 0);
 }
 
-inline void prefetch(std::span<const std::uint16_t> soon, std::size_t from, std::size_t to) {
+/// The cache lines of the pixels from `from` to before `to`, as far as there are such.
+[[gnu::always_inline]] inline void prefetch(std::span<const std::uint16_t> soon, std::size_t from, std::size_t to) {
+  if (from >= soon.size()) return;
   for (std::size_t at = from; at < to && at < soon.size(); at += kCacheLine) __builtin_prefetch(soon.data() + at);
+  if (to >= soon.size()) __builtin_prefetch(&soon.back());  // its line may be one that no step met
 }
 
-/// `Set` is an instruction set: its vectors of unsigned 16 and 32 bits `Words` and `Sums`, the same with signs
-/// `SignedWords` and `SignedSums`, and of signed words
-///   madd(a, b)          products, added in pairs to Sums,
-///   add_madd(to, a, b)  the same added to `to`,
-///   mulhrs(a, b)        (a b + 2^14) >> 15.
+/// `Set` is an instruction set: its vectors of unsigned 16 and 32 bits `Words` and `Sums`, and of signed words
+///   madd(a, b)                   products, added in pairs to Sums,
+///   add_madd(to, a, b)           the same added to `to`,
+///   mulhrs(a, b)                 (a b + 2^14) >> 15,
+///   count_less(counts, a, b)     `counts`, one more where a < b.
 template <class Set>
 class VectorSummer {
  public:
@@ -63,30 +66,27 @@ class VectorSummer {
       : threshold_(Words{} + static_cast<std::uint16_t>(full_scale - kPowerShift)), full_scale_(full_scale) {}
 
   void add(PixelRows rows, PixelRows soon, PowerSums& sums) const {
-    State state;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (rows[k].size() < kGroup)
-        power_kernels().back().add(rows.subspan(k, 1), {}, full_scale_, sums);
+    for (std::size_t from = 0; from < rows.size();) {
+      const std::size_t some = rows_at_once(rows.subspan(from));
+      if (some == 0)
+        add_long(rows[from], sums);
       else
-        add_row(rows[k], k < soon.size() ? soon[k] : Row(), state, sums);
+        add_some(rows.subspan(from, some), soon.subspan(std::min(from, soon.size())), sums);
+      from += std::max<std::size_t>(some, 1);
     }
-    put(totals(state), state.pixels, state.fill, full_scale_, sums);
   }
 
  private:
   using Row = std::span<const std::uint16_t>;
   using Words = typename Set::Words;
   using Sums = typename Set::Sums;
-  using SignedWords = typename Set::SignedWords;
-  using SignedSums = typename Set::SignedSums;
   static constexpr std::size_t kLanes = sizeof(Words) / sizeof(std::uint16_t);
-  static constexpr std::size_t kGroup = 64;  // pixels
-  static_assert(kGroup / kLanes == 2 || kGroup / kLanes == 4);
+  static constexpr std::size_t kGroup = 4 * kLanes;  // pixels
 
-  // 0 for the pixels of the last group that the one before it held, all ones for the others.
-  static constexpr auto kMask = [] {
-    std::array<std::uint16_t, 2 * kGroup> mask{};
-    for (std::size_t k = kGroup; k < mask.size(); ++k) mask[k] = 0xFFFF;
+  // Read from pixel n on: 0 for all but the last n lanes, which are all ones.
+  static constexpr auto kLastLanes = [] {
+    std::array<std::uint16_t, 2 * kLanes> mask{};
+    for (std::size_t k = kLanes; k < mask.size(); ++k) mask[k] = 0xFFFF;
     return mask;
   }();
 
@@ -104,15 +104,51 @@ class VectorSummer {
     std::size_t fill = 0;  ///< lanes of d = 0 that are no pixel's
   };
 
+  /// Of two or four vectors, not yet in a SplitSum.
+  struct Products {
+    Sums d_high{}, d_low{}, high_high{}, high_low{}, low_low{};
+  };
+
+  /// How many of the first rows fit the sums of a State; 0 when the first is too long.
+  static std::size_t rows_at_once(PixelRows rows) {
+    std::size_t pixels = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      pixels += rows[k].size();
+      if (pixels > kMostPixels) return k;
+    }
+    return rows.size();
+  }
+
+  void add_long(Row row, PowerSums& sums) const {
+    for (std::size_t from = 0; from < row.size(); from += kMostPixels) {
+      const Row piece = row.subspan(from, std::min(kMostPixels, row.size() - from));
+      add_some({&piece, 1}, {}, sums);
+    }
+  }
+
+  /// Rows that fit the sums of a State.
+  void add_some(PixelRows rows, PixelRows soon, PowerSums& sums) const {
+    State state;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (rows[k].size() >= kLanes) add_row(rows[k], k < soon.size() ? soon[k] : Row(), state);
+    }
+    put(totals(state), state.pixels, state.fill, full_scale_, sums);
+    // Apart from the others: a call in the loop above would send all its sums to memory in each row.
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (rows[k].size() < kLanes) power_kernels().back().add(rows.subspan(k, 1), {}, full_scale_, sums);
+    }
+  }
+
   [[gnu::always_inline]] static Words load(const std::uint16_t* at) {
     Words words;
     std::memcpy(&words, at, sizeof words);
     return words;
   }
 
+  /// Words of 0 and 1 in turn: madd with them is the upper, signed half of each 32 bits.
   [[gnu::always_inline]] static void take(SplitSum& sum, Sums terms) {
     sum.wrapped += terms;
-    sum.high += reinterpret_cast<Sums>(reinterpret_cast<SignedSums>(terms) >> 16);
+    sum.high = Set::add_madd(sum.high, reinterpret_cast<Words>(terms), reinterpret_cast<Words>(Sums{} + (1U << 16U)));
   }
 
   /// Four vectors of squares may reach 2^31, which has no sign.
@@ -121,64 +157,71 @@ class VectorSummer {
     sum.high += terms >> 16;
   }
 
-  /// Two or four vectors of pixels; where masked, those that count are d, the others 0.
-  template <bool is_masked>
-  [[gnu::always_inline]] void add_group(const std::uint16_t* pixels, const std::uint16_t* mask, State& to) const {
+  [[gnu::always_inline]] void add_vector(Words d, Products& products, State& to) const {
     const Words ones = Words{} + std::uint16_t{1};
-    Sums d_high{}, d_low{}, high_high{}, high_low{}, low_low{};
-    for (std::size_t k = 0; k < kGroup / kLanes; ++k) {
-      Words d = load(pixels + k * kLanes) ^ std::uint16_t{kPowerShift};
-      if constexpr (is_masked) d &= load(mask + k * kLanes);
-      const Words rounded = Set::mulhrs(d, d);  // d^2 / 2^15; 2^15 has lost its sign, which the next line does not mind
-      const Words high = rounded - std::uint16_t{1 << 14};
-      const Words low = d * d - (rounded << 15);
-      to.below -= reinterpret_cast<Words>(reinterpret_cast<SignedWords>(threshold_) > reinterpret_cast<SignedWords>(d));
-      to.d = Set::add_madd(to.d, d, ones);
-      to.high = Set::add_madd(to.high, high, ones);
-      to.low = Set::add_madd(to.low, low, ones);
-      d_high = k % 2 == 0 ? Set::madd(d, high) : Set::add_madd(d_high, d, high);
-      d_low = k % 2 == 0 ? Set::madd(d, low) : Set::add_madd(d_low, d, low);
-      high_high = k == 0 ? Set::madd(high, high) : Set::add_madd(high_high, high, high);
-      high_low = k == 0 ? Set::madd(high, low) : Set::add_madd(high_low, high, low);
-      low_low = k == 0 ? Set::madd(low, low) : Set::add_madd(low_low, low, low);
-      if (k % 2 == 0) continue;
-      take(to.d_high, d_high);
-      take(to.d_low, d_low);
-    }
-    take_squares(to.high_high, high_high);
-    take(to.high_low, high_low);
-    take_squares(to.low_low, low_low);
+    const Words rounded = Set::mulhrs(d, d);  // d^2 / 2^15; 2^15 has lost its sign, which the next line does not mind
+    const Words high = rounded - std::uint16_t{1 << 14};
+    const Words low = d * d - (rounded << 15);
+    to.below = Set::count_less(to.below, d, threshold_);
+    to.d = Set::add_madd(to.d, d, ones);
+    to.high = Set::add_madd(to.high, high, ones);
+    to.low = Set::add_madd(to.low, low, ones);
+    products.d_high = Set::add_madd(products.d_high, d, high);
+    products.d_low = Set::add_madd(products.d_low, d, low);
+    products.high_high = Set::add_madd(products.high_high, high, high);
+    products.high_low = Set::add_madd(products.high_low, high, low);
+    products.low_low = Set::add_madd(products.low_low, low, low);
   }
 
-  /// A row of at least a group, part by part; no part is shorter than a group.
-  [[gnu::always_inline]] void add_row(Row row, Row soon, State& state, PowerSums& sums) const {
-    for (std::size_t from = 0; from < row.size();) {
-      const std::size_t left = row.size() - from;
-      const std::size_t n = left < kMostOfARow + kGroup ? left : kMostOfARow;
-      if (state.pixels + n > kMostPixels) {
-        put(totals(state), state.pixels, state.fill, full_scale_, sums);
-        state = {};
+  /// `n` pixels that need `vectors` (1 to 4) of them. Where they do not fill the last it is read back from the end,
+  /// over pixels that are summed already and count as d = 0.
+  template <std::size_t vectors, bool fills_last>
+  [[gnu::always_inline]] void add_group(const std::uint16_t* pixels, std::size_t n, State& to) const {
+    Products products;
+    for (std::size_t k = 0; k < vectors; ++k) {
+      const bool is_last = k + 1 == vectors;
+      if (is_last && !fills_last) {
+        const Words d = load(pixels + n - kLanes) ^ std::uint16_t{kPowerShift};
+        add_vector(d & load(kLastLanes.data() + (n - k * kLanes)), products, to);
+      } else {
+        add_vector(load(pixels + k * kLanes) ^ std::uint16_t{kPowerShift}, products, to);
       }
-      add_part(row.data() + from, n, from < soon.size() ? soon.subspan(from) : Row(), state);
-      from += n;
+      if (k % 2 == 0 && !is_last) continue;
+      take(to.d_high, products.d_high);
+      take(to.d_low, products.d_low);
+      products.d_high = products.d_low = Sums{};
     }
+    take_squares(to.high_high, products.high_high);
+    take(to.high_low, products.high_low);
+    take_squares(to.low_low, products.low_low);
+    if (!fills_last) to.fill += vectors * kLanes - n;
   }
 
-  [[gnu::always_inline]] void add_part(const std::uint16_t* pixels, std::size_t n, Row soon, State& state) const {
+  /// A row of at least a vector.
+  [[gnu::always_inline]] void add_row(Row row, Row soon, State& state) const {
+    const std::uint16_t* const pixels = row.data();
+    const std::size_t n = row.size();
     std::size_t done = 0;
     for (; done + kGroup <= n; done += kGroup) {
       prefetch(soon, done, done + kGroup);
-      add_group<false>(pixels + done, nullptr, state);
+      add_group<4, true>(pixels + done, kGroup, state);
     }
-    state.pixels += n;
     prefetch(soon, done, soon.size());
-    if (done == n) return;
-    // The last group overlaps the one before it.
-    add_group<true>(pixels + n - kGroup, kMask.data() + (n - done), state);
-    state.fill += kGroup - (n - done);
+    state.pixels += n;
+    const std::size_t left = n - done;
+    if (left > 3 * kLanes) {
+      add_group<4, false>(pixels + done, left, state);
+    } else if (left > 2 * kLanes) {
+      add_group<3, false>(pixels + done, left, state);
+    } else if (left > kLanes) {
+      add_group<2, false>(pixels + done, left, state);
+    } else if (left > 0) {
+      add_group<1, false>(pixels + done, left, state);
+    }
   }
 
-  [[gnu::always_inline]] static std::int32_t over_lanes(const Sums& lanes) {
+  // By value: a reference would keep the sums in memory.
+  [[gnu::always_inline]] static std::int32_t over_lanes(Sums lanes) {
     std::uint32_t sum = 0;
     for (std::size_t k = 0; k < kLanes / 2; ++k) sum += lanes[k];
     return static_cast<std::int32_t>(sum);

@@ -35,7 +35,7 @@ class PowerSummer {
  public:
   explicit PowerSummer(std::uint16_t full_scale);
 
-  /// `soon` are rows that come later, to be called from memory meanwhile.
+  /// `soon` are rows that come later, to be called from memory meanwhile, one with each row.
   void add(PixelRows rows, PixelRows soon, PowerSums& sums) const;
   /// Takes one pixel out that was added.
   void remove(std::uint16_t pixel, PowerSums& sums) const;
