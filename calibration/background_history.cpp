@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "calibration/visit_search.h"
+
 namespace gonio::calibration {
 
 void BackgroundHistory::add(std::int32_t light_class, const BackgroundVisit& visit) {
@@ -16,7 +18,7 @@ std::optional<BackgroundLevel> BackgroundHistory::at(std::int32_t light_class, I
   const auto found = visits_.find(light_class);
   if (found == visits_.end()) return std::nullopt;
   const std::vector<BackgroundVisit>& visits = found->second;
-  const auto next = std::ranges::lower_bound(visits, when, {}, &BackgroundVisit::at);
+  const auto next = visits.begin() + static_cast<std::ptrdiff_t>(first_not_before(visits, when));
   if (next == visits.begin()) return BackgroundLevel{.level = next->level, .after = &*next, .weight_after = 1.0};
   const BackgroundVisit& a = *(next - 1);
   if (next == visits.end()) return BackgroundLevel{.level = a.level, .before = &a};

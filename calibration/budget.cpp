@@ -8,11 +8,10 @@
 #include <utility>
 
 #include "calibration/coverage_interval.h"
+#include "calibration/student_t.h"
 
 namespace gonio::calibration {
 namespace {
-
-constexpr double kLevel = 0.9545;
 
 double square(double x) {
   return x * x;
@@ -50,64 +49,13 @@ double sum_of_squares(std::span<const BudgetTerm> terms) {
   return sum;
 }
 
-// The regularised incomplete beta function I_x(a, b) by Lentz's continued fraction (NIST DLMF 8.17.22), which converges
-// fast for x below (a + 1) / (a + b + 2).
-double incomplete_beta(double x, double a, double b) {
-  if (x <= 0.0) return 0.0;
-  if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incomplete_beta(1.0 - x, b, a);
-  constexpr double kTiny = 1e-300;
-  constexpr int kTermsAtMost = 500;
-  double c = 1.0;
-  double d = 1.0 / std::max(kTiny, 1.0 - (a + b) * x / (a + 1.0));
-  double fraction = d;
-  for (int m = 1; m <= kTermsAtMost; ++m) {
-    const double even = m * (b - m) * x / ((a + 2 * m - 1.0) * (a + 2 * m));
-    d = 1.0 / (1.0 + even * d);
-    c = 1.0 + even / c;
-    fraction *= c * d;
-    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1.0));
-    d = 1.0 / (1.0 + odd * d);
-    c = 1.0 + odd / c;
-    fraction *= c * d;
-    if (std::abs(c * d - 1.0) < 1e-15) break;
-  }
-  const double log_front = a * std::log(x) + b * std::log1p(-x) + std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b);
-  return std::exp(log_front) * fraction / a;
-}
-
-// The share of Student's t with `nu` degrees of freedom within +-t: I_y(1/2, nu/2), y = t^2 / (nu + t^2).
-double share_within(double t, double nu) {
-  return incomplete_beta(t * t / (nu + t * t), 0.5, 0.5 * nu);
-}
-
-// Student's t at the level, as a series in 1 / nu about the normal z (Abramowitz and Stegun 1964, 26.7.5).
-double series_of_t(double nu) {
-  constexpr double kNormal = 2.0000024438996;  // of 0.9545; the tables' 2.000
-  const double z = kNormal;
-  const double z2 = z * z;
-  const double g1 = z * (z2 + 1.0) / 4.0;
-  const double g2 = z * ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
-  const double g3 = z * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
-  const double g4 = z * ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
-  return z + (g1 + (g2 + (g3 + g4 / nu) / nu) / nu) / nu;
-}
-
 }  // namespace
 
 double coverage_factor(double degrees_of_freedom) {
   assert(degrees_of_freedom > 0.0);
   constexpr double kAsGoodAsInfinite = 1e5;  // there k differs from its limit by 3e-5
   if (degrees_of_freedom > kAsGoodAsInfinite) return 2.0;
-  constexpr double kSeries = 200.0;  // there the series is good to 1e-11
-  if (degrees_of_freedom > kSeries) return series_of_t(degrees_of_freedom);
-  double low = 2.0;
-  double high = 4.0;
-  while (share_within(high, degrees_of_freedom) < kLevel && high < 1e9) high *= 2.0;
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    (share_within(middle, degrees_of_freedom) < kLevel ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return student_factor(degrees_of_freedom);
 }
 
 Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm>& random,

@@ -46,27 +46,20 @@ Error no_reference(const PlannedPoint& point) {
           .limit = "one at the same geometry and wavelength"};
 }
 
-/// Where a point comes from.
-struct Origin {
-  std::int32_t point_index = 0;
-  std::int64_t sample_reading = 0;
-  bool is_borrowed = false;
-};
-
-/// A block of the scan on its way: points that have a pair of readings.
+/// A block of the scan on its way: its points that have a pair of readings.
 struct DraftBlock {
-  std::size_t first = 0;  ///< of its points, among all with a value
-  LargeArray<PairedPoint> pairs;
-  std::vector<Origin> origins;    ///< as many
-  LargeArray<SlopePoint> places;  ///< as many, until they are joined
+  std::size_t first = 0;             ///< of its points, among all with a value
+  std::vector<std::size_t> of_plan;  ///< each one's number in the plan
+  std::vector<PairedPoint> kept;     ///< as many, where they are kept (is_dear)
   std::vector<RefusedPoint> refused;
   ScanTally tally;
 };
 
-/// The scan on its way. Blocks are never joined: a pair of readings is some kilobyte.
+/// The scan on its way.
 struct Draft {
+  std::vector<ReadingPair> pairs;  ///< [n]: of the plan's point n
   std::vector<DraftBlock> blocks;
-  LargeArray<SlopePoint> places;  ///< of all blocks
+  LargeArray<SlopePoint> places;  ///< of all points with a value
 };
 
 /// All that every point of a scan is made with.
@@ -92,82 +85,102 @@ struct Workshop {
   }
 };
 
-void keep_pair(const PlannedPoint& point, const ReadingPair& readings, PairedPoint&& pair, const Workshop& shop,
-               DraftBlock& draft) {
-  draft.origins.push_back(
-      {.point_index = point.index, .sample_reading = readings.sample->id, .is_borrowed = readings.is_borrowed});
-  draft.places.push_back({.planned = point.geometry,
-                          .reported = pair.sample.geometry,
-                          .wavelength = point.wavelength,
-                          .value = per_steradian(pair.value),
-                          .u_random = scatter(pair, shop.instrument),
-                          .state = static_cast<std::int32_t>(point.polarisation)});
-  draft.tally.frame_chi2 += pair.sample.frame_chi2 + pair.reference.frame_chi2;
-  draft.tally.frame_dof += pair.sample.frame_dof + pair.reference.frame_dof;
-  draft.pairs.push_back(std::move(pair));
+// A pair of readings is some kilobyte: to work it out twice costs less than to carry it through memory, but where its
+// terms have names of their own or its area is an integral.
+bool is_dear(const Workshop& shop) {
+  return shop.scan.reference_mode != ReferenceMode::SameGeometry || shop.instrument.overlap.has_value();
 }
 
-DraftBlock draft_block(const std::vector<ReadingPair>& pairs, std::size_t first, std::size_t last,
-                       const Workshop& shop) {
-  DraftBlock draft;
-  draft.pairs.reserve(last - first);
-  draft.origins.reserve(last - first);
-  draft.places.reserve(last - first);
-  const EquationContext context = shop.equation();
-  for (std::size_t n = first; n < last; ++n) {
-    const PlannedPoint& point = shop.scan.points[n];
-    if (pairs[n].sample == nullptr) continue;
-    if (pairs[n].reference == nullptr && shop.scan.reference_mode == ReferenceMode::SameGeometry) {
-      draft.refused.push_back({point.index, no_reference(point)});
-      continue;
+SlopePoint place_of(const PlannedPoint& point, const PairedPoint& pair, const InstrumentModel& instrument) {
+  return {.planned = point.geometry,
+          .reported = pair.sample.geometry,
+          .wavelength = point.wavelength,
+          .value = per_steradian(pair.value),
+          .u_random = scatter(pair, instrument),
+          .state = static_cast<std::int32_t>(point.polarisation)};
+}
+
+/// Works one block out, as far as it needs no other.
+class BlockDrafter {
+ public:
+  BlockDrafter(const Workshop& shop, const std::vector<ReadingPair>& pairs)
+      : shop_(shop), pairs_(pairs), context_(shop.equation()), keeps_(is_dear(shop)) {}
+
+  /// The block's places come to the beginning of `places`, which has room for `last` - `first`.
+  DraftBlock draft(std::size_t first, std::size_t last, SlopePoint* places) {
+    DraftBlock block;
+    block.of_plan.reserve(last - first);
+    for (std::size_t n = first; n < last; ++n) {
+      if (pairs_[n].sample == nullptr) continue;
+      auto outcome = equate_one(n);
+      if (!outcome) {
+        block.refused.push_back({shop_.scan.points[n].index, std::move(outcome).error()});
+        continue;
+      }
+      *places++ = place_of(shop_.scan.points[n], pair_, shop_.instrument);
+      block.of_plan.push_back(n);
+      block.tally.frame_chi2 += pair_.sample.frame_chi2 + pair_.reference.frame_chi2;
+      block.tally.frame_dof += pair_.sample.frame_dof + pair_.reference.frame_dof;
+      if (keeps_) block.kept.push_back(pair_);
     }
-    auto pair = equate(point, pairs[n], context);
-    if (pair) {
-      keep_pair(point, pairs[n], std::move(*pair), shop, draft);
-    } else {
-      draft.refused.push_back({point.index, std::move(pair).error()});
-    }
+    block.tally.refused = block.refused.size();
+    return block;
   }
-  draft.tally.refused = draft.refused.size();
-  return draft;
-}
 
-void join_places(Draft& draft, int threads) {
+ private:
+  Result<void> equate_one(std::size_t n) {
+    const PlannedPoint& point = shop_.scan.points[n];
+    if (pairs_[n].reference == nullptr && shop_.scan.reference_mode == ReferenceMode::SameGeometry) {
+      return failure(no_reference(point));
+    }
+    return equate(point, pairs_[n], context_, pair_);
+  }
+
+  const Workshop& shop_;
+  const std::vector<ReadingPair>& pairs_;
+  EquationContext context_;
+  bool keeps_;
+  PairedPoint pair_;
+};
+
+// Each block has written its places where they belong if no point is missing before them.
+void close_gaps(Draft& draft) {
   std::size_t points = 0;
-  for (DraftBlock& block : draft.blocks) {
+  for (std::size_t b = 0; b < draft.blocks.size(); ++b) {
+    DraftBlock& block = draft.blocks[b];
     block.first = points;
-    points += block.places.size();
+    const auto from = draft.places.begin() + static_cast<std::ptrdiff_t>(b * kPointsInBlock);
+    const auto to = draft.places.begin() + static_cast<std::ptrdiff_t>(points);
+    if (from != to) std::copy(from, from + static_cast<std::ptrdiff_t>(block.of_plan.size()), to);
+    points += block.of_plan.size();
   }
   draft.places.resize(points);
-  for_blocks(draft.blocks.size(), threads, [&](std::size_t number) {
-    DraftBlock& block = draft.blocks[number];
-    std::ranges::copy(block.places, draft.places.begin() + static_cast<std::ptrdiff_t>(block.first));
-    block.places = {};
-  });
 }
 
-Draft draft_scan(const Workshop& shop, const std::vector<ReadingPair>& pairs) {
-  Draft draft;
-  draft.blocks.resize(blocks_of(pairs.size()));
+Draft draft_scan(const Workshop& shop, std::vector<ReadingPair> pairs) {
+  Draft draft{.pairs = std::move(pairs)};
+  const std::size_t points = draft.pairs.size();
+  draft.places.resize(points);
+  draft.blocks.resize(blocks_of(points));
   for_blocks(draft.blocks.size(), shop.options.threads, [&](std::size_t block) {
     const std::size_t first = block * kPointsInBlock;
-    draft.blocks[block] = draft_block(pairs, first, std::min(pairs.size(), first + kPointsInBlock), shop);
+    const std::size_t last = std::min(points, first + kPointsInBlock);
+    draft.blocks[block] = BlockDrafter(shop, draft.pairs).draft(first, last, draft.places.data() + first);
   });
-  join_places(draft, shop.options.threads);
+  close_gaps(draft);
   return draft;
 }
 
-std::vector<SpectralSlope> spectral_slopes_of(const Draft& draft, const InstrumentModel& instrument) {
-  if (!instrument.spectral) return {};
+std::vector<SpectralSlope> spectral_slopes_of(const Draft& draft, const Workshop& shop) {
+  if (!shop.instrument.spectral) return {};
   std::vector<SpectralPoint> points;
-  for (const DraftBlock& block : draft.blocks) {
-    for (const PairedPoint& pair : block.pairs) {
-      const double certificate = pair.standard.rho.value;
-      points.push_back({.planned = draft.places[points.size()].planned,
-                        .wavelength = pair.wavelength,
-                        .over_certificate = certificate > 0.0 ? pair.value / certificate : pair.value,
-                        .certificate = certificate > 0.0 ? certificate : 1.0});
-    }
+  for (const SlopePoint& place : draft.places) {
+    const bool has_standard = shop.scan.reference_mode != ReferenceMode::Absolute;
+    const double certificate = has_standard ? shop.standard.reflectance(place.wavelength).value().value : 1.0;
+    points.push_back({.planned = place.planned,
+                      .wavelength = place.wavelength,
+                      .over_certificate = certificate > 0.0 ? place.value.si() / certificate : place.value.si(),
+                      .certificate = certificate > 0.0 ? certificate : 1.0});
   }
   return spectral_slopes(points);
 }
@@ -208,48 +221,84 @@ struct Neighbourhoods {
   std::vector<SpectralSlope> spectral;  ///< empty: the instrument states none
 };
 
-CalibratedPoint finish_point(std::size_t n, const Neighbourhoods& around, const Workshop& shop, const Origin& origin,
-                             PairedPoint& pair, TermList& terms) {
-  CalibratedPoint point{.point_index = origin.point_index,
-                        .geometry = pair.sample.geometry,
-                        .wavelength = pair.wavelength,
-                        .value = {},
-                        .budget = {},
-                        .sample_reading = origin.sample_reading,
-                        .reference_reading = pair.reference_id};
-  const DirectionSlopes slopes = around.slopes.at(n);
-  const ConeCorrection cones = cone_correction(pair, slopes, shop.instrument, shop.standard);
-  if (!shop.options.left_out.cones) pair.value -= cones.bias;
-  point.value = per_steradian(pair.value);
-  terms.clear();
-  const SpectralSlope spectral = around.spectral.empty() ? SpectralSlope{} : around.spectral[n];
-  shop.rules.add_terms(pair, slopes, cones, spectral, terms);
-  point.budget = terms.budget();
-  const MonteCarloUse use = shop.options.monte_carlo;
-  const Nonlinearity bent = shop.rules.nonlinearity(pair, slopes);
-  const bool is_needed = use == MonteCarloUse::Always ||
-                         (use == MonteCarloUse::WhereNeeded && needs_monte_carlo(point.budget, terms, bent));
-  if (is_needed) {
-    const std::uint64_t stream =
-        shop.options.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(n) * 0x2545F491ULL;
-    propagate_by_monte_carlo(pair.value, terms, bent, stream, point.budget);
-  }
-  point.flags = flags_of(pair, point.budget, slopes, cones, terms, origin.is_borrowed);
-  return point;
-}
+/// Makes the points of one block, one after the other.
+class BlockFinisher {
+ public:
+  BlockFinisher(const Workshop& shop, const Neighbourhoods& around, const Draft& draft, const DraftBlock& block,
+                ComponentTable& table)
+      : shop_(shop), around_(around), draft_(draft), block_(block), context_(shop.equation()), terms_(table) {}
 
-void finish_block(const Neighbourhoods& around, const Workshop& shop, DraftBlock& block, ComponentTable& table,
-                  TermStore& store, std::span<CalibratedPoint> points) {
-  store = TermStore(block.pairs.size());
-  TermList terms(table);
-  for (std::size_t k = 0; k < block.pairs.size(); ++k) {
-    CalibratedPoint& point = points[k];
-    point = finish_point(block.first + k, around, shop, block.origins[k], block.pairs[k], terms);
+  CalibratedPoint finish(std::size_t k, TermStore& store) {
+    const std::size_t n = block_.first + k;
+    equate_again(k);
+    const DirectionSlopes slopes = around_.slopes.at(n);
+    const ConeCorrection cones = cone_correction(pair_, slopes, shop_.instrument, shop_.standard);
+    if (!shop_.options.left_out.cones) pair_.value -= cones.bias;
+    terms_.clear();
+    const SpectralSlope spectral = around_.spectral.empty() ? SpectralSlope{} : around_.spectral[n];
+    shop_.rules.add_terms(pair_, slopes, cones, spectral, terms_);
+    CalibratedPoint point = point_of(k);
+    point.budget = budget_of(n, slopes);
+    point.flags = flags_of(pair_, point.budget, slopes, cones, terms_, readings(k).is_borrowed);
     point.budget.random = store.keep(point.budget.random);
     point.budget.shared = store.keep(point.budget.shared);
-    block.tally.add(point);
+    return point;
   }
-  block.pairs = {};
+
+ private:
+  [[nodiscard]] const ReadingPair& readings(std::size_t k) const { return draft_.pairs[block_.of_plan[k]]; }
+
+  void equate_again(std::size_t k) {
+    if (!block_.kept.empty()) {
+      pair_ = block_.kept[k];
+    } else {
+      (void)equate(shop_.scan.points[block_.of_plan[k]], readings(k), context_, pair_);  // as it went before
+    }
+    add_standard_slopes(context_, pair_);
+  }
+
+  [[nodiscard]] CalibratedPoint point_of(std::size_t k) const {
+    return {.point_index = shop_.scan.points[block_.of_plan[k]].index,
+            .geometry = pair_.sample.geometry,
+            .wavelength = pair_.wavelength,
+            .value = per_steradian(pair_.value),
+            .budget = {},
+            .sample_reading = readings(k).sample->id,
+            .reference_reading = pair_.reference_id};
+  }
+
+  Budget budget_of(std::size_t n, const DirectionSlopes& slopes) {
+    Budget budget = terms_.budget();
+    const MonteCarloUse use = shop_.options.monte_carlo;
+    const Nonlinearity bent = shop_.rules.nonlinearity(pair_, slopes);
+    const bool is_needed =
+        use == MonteCarloUse::Always || (use == MonteCarloUse::WhereNeeded && needs_monte_carlo(budget, terms_, bent));
+    if (is_needed) {
+      const std::uint64_t stream =
+          shop_.options.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(n) * 0x2545F491ULL;
+      propagate_by_monte_carlo(pair_.value, terms_, bent, stream, budget);
+    }
+    return budget;
+  }
+
+  const Workshop& shop_;
+  const Neighbourhoods& around_;
+  const Draft& draft_;
+  const DraftBlock& block_;
+  EquationContext context_;
+  TermList terms_;
+  PairedPoint pair_;
+};
+
+void finish_block(const Neighbourhoods& around, const Workshop& shop, const Draft& draft, DraftBlock& block,
+                  ComponentTable& table, TermStore& store, std::span<CalibratedPoint> points) {
+  store = TermStore(points.size());
+  BlockFinisher finisher(shop, around, draft, block, table);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    points[k] = finisher.finish(k, store);
+    block.tally.add(points[k]);
+  }
+  block.kept = {};
 }
 
 // One table of all blocks' components; the terms count in it.
@@ -269,8 +318,8 @@ void finish_points(const Neighbourhoods& around, const Workshop& shop, Draft& dr
   std::vector<ComponentTable> tables(draft.blocks.size());
   for_blocks(tables.size(), shop.options.threads, [&](std::size_t number) {
     DraftBlock& block = draft.blocks[number];
-    finish_block(around, shop, block, tables[number], (*store)[number],
-                 points.subspan(block.first, block.pairs.size()));
+    finish_block(around, shop, draft, block, tables[number], (*store)[number],
+                 points.subspan(block.first, block.of_plan.size()));
   });
   scan.components = join_components(tables, *store, shop.options.threads);
   scan.terms = store;
@@ -323,9 +372,9 @@ Result<CalibratedScan> calibrate(const ScanReadings& scan, const InstrumentModel
       shop.emplace(scan, instrument, standard, options);
     }
   });
-  Draft draft = draft_scan(*shop, pairs);
+  Draft draft = draft_scan(*shop, std::move(pairs));
   const Neighbourhoods around{.slopes = SlopeField(draft.places, scan.isotropic, options.threads),
-                              .spectral = spectral_slopes_of(draft, instrument)};
+                              .spectral = spectral_slopes_of(draft, *shop)};
   CalibratedScan calibrated;
   finish_points(around, *shop, draft, calibrated);
   std::vector<ScanTally> tallies;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/visit_search.h"
+
 namespace gonio::calibration {
 namespace {
 
@@ -102,7 +104,7 @@ std::optional<DarkLevel> DarkHistory::at(ExposureRung rung, Instant when) const 
   const auto found = visits_.find(rung);
   if (found == visits_.end()) return std::nullopt;
   const std::vector<DarkVisit>& visits = found->second;
-  const auto next = std::ranges::lower_bound(visits, when, {}, &DarkVisit::at);
+  const auto next = visits.begin() + static_cast<std::ptrdiff_t>(first_not_before(visits, when));
   if (next != visits.begin() && next != visits.end()) {
     const DarkVisit& a = *(next - 1);
     const DarkVisit& b = *next;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calibration/direction_lines.h"
+#include "calibration/line_derivatives.h"
 #include "calibration/parallel_blocks.h"
 #include "calibration/root_sum.h"
 
@@ -12,18 +13,15 @@ namespace gonio::calibration {
 namespace {
 
 constexpr double kSamePlace = 2e-4;  // 0.01 deg: closer neighbours give noise over nothing
-constexpr std::size_t kNeighboursAtMost = 4;
-constexpr std::size_t kNodesAtMost = kNeighboursAtMost + 1;
+constexpr std::size_t kNodesAtMost = LineNodes::kAtMost;
+static_assert(kDirectionAxes <= kLineLanes);
 
 SlopeOrdinate ordinate_of(const SlopePoint& p) {
   constexpr double kClearOfZero = 5.0;  // standard uncertainties: then ln f is normal too
-  SlopeOrdinate o{.f = p.value.si(), .u = p.u_random.si()};
-  o.has_logarithm = o.f > kClearOfZero * o.u && o.f > 0.0;
-  if (o.has_logarithm) {
-    o.log_f = std::log(o.f);
-    o.u_log = o.u / o.f;
-  }
-  return o;
+  const double f = p.value.si();
+  const double u = p.u_random.si();
+  if (!(f > kClearOfZero * u && f > 0.0)) return {};
+  return {.log_f = std::log(f), .u_log = u / f};
 }
 
 /// A point and its neighbours on a line, nearest first.
@@ -69,88 +67,54 @@ Nodes nodes_about(const LineStop& own) {
     (next->coordinate < x0 ? last_below : last_above) = next->coordinate;
     nodes.stop[nodes.size++] = next;
   }
-  add_own_images(own, nodes);
+  if (nodes.size < kNodesAtMost) add_own_images(own, nodes);
   return nodes;
 }
 
-/// First and second derivative with their noise.
-struct Estimate {
-  double first = 0.0;
-  double first_noise2 = 0.0;
-  double second = 0.0;
-  double second_noise2 = 0.0;
-  double own = 0.0;  ///< the derivative of as high an order as the polynomial's
-  double own_noise2 = 0.0;
+/// The lines through a point, an axis a lane.
+struct PointLines {
+  LineNodes nodes;
+  std::array<double, kDirectionAxes> unit{};  ///< of a derivative: f of a line through ln f
+  std::array<double, kDirectionAxes> sign{};
+  LineDerivatives found;
+
+  [[nodiscard]] std::size_t size(std::size_t axis) const { return static_cast<std::size_t>(nodes.size[axis]); }
 };
 
-/// Derivatives at the first node of the polynomials through 1, 2, .. nodes; the first is a constant's.
-/// Newton's form: P_p = P_(p-1) + y[x_0 .. x_p] prod_(m<p) (x - x_m), x_0 = 0, so that at 0
-///   P_p' = P_(p-1)' + y[..] prod_(1<=m<p) (-x_m),
-///   P_p'' = P_(p-1)'' + 2 y[..] sum_(1<=m<p) prod_(n != m) (-x_n),
-/// and y[x_0 .. x_p] = sum_j y_j / prod_(m != j) (x_j - x_m).
-std::array<Estimate, kNodesAtMost> estimates(const Nodes& nodes, const std::array<double, kNodesAtMost>& y,
-                                             const std::array<double, kNodesAtMost>& u) {
-  std::array<Estimate, kNodesAtMost> found{};
-  std::array<double, kNodesAtMost> x{};
-  std::array<double, kNodesAtMost> divided{1.0};
-  std::array<double, kNodesAtMost> first{};
-  std::array<double, kNodesAtMost> second{};
-  double product = 1.0;     // of -x_m, 1 <= m < p
-  double derivative = 0.0;  // sum over m of the products without m
-  double factorial = 1.0;
-  for (std::size_t p = 1; p < nodes.size; ++p) {
-    x[p] = nodes.stop[p]->coordinate - nodes.stop[0]->coordinate;
-    double own = 1.0;
-    for (std::size_t j = 0; j < p; ++j) {
-      divided[j] /= x[j] - x[p];
-      own *= x[p] - x[j];
-    }
-    divided[p] = 1.0 / own;
-    factorial *= static_cast<double>(p);
-    Estimate& e = found[p];
-    for (std::size_t j = 0; j <= p; ++j) {
-      first[j] += product * divided[j];
-      second[j] += 2.0 * derivative * divided[j];
-      e.first += first[j] * y[j];
-      e.second += second[j] * y[j];
-      e.first_noise2 += first[j] * first[j] * u[j] * u[j];
-      e.second_noise2 += second[j] * second[j] * u[j] * u[j];
-      const double own_of_j = factorial * divided[j];
-      e.own += own_of_j * y[j];
-      e.own_noise2 += own_of_j * own_of_j * u[j] * u[j];
-    }
-    derivative = -x[p] * derivative + product;
-    product *= -x[p];
+void read_line(std::span<const SlopePoint> points, std::span<const SlopeOrdinate> ordinates, const LineStop& own,
+               std::size_t axis, PointLines& lines) {
+  const Nodes near = nodes_about(own);
+  bool has_logarithm = true;
+  for (std::size_t n = 0; n < near.size; ++n) {
+    const SlopeOrdinate& o = ordinates[near.stop[n]->point];
+    has_logarithm &= o.has_logarithm();
+    lines.nodes.x[n][axis] = near.stop[n]->coordinate - own.coordinate;
+    lines.nodes.y[n][axis] = o.log_f;
+    lines.nodes.u2[n][axis] = o.u_log * o.u_log;
   }
-  return found;
+  for (std::size_t n = 0; n < near.size && !has_logarithm; ++n) {
+    const SlopePoint& p = points[near.stop[n]->point];
+    lines.nodes.y[n][axis] = p.value.si();
+    lines.nodes.u2[n][axis] = p.u_random.si() * p.u_random.si();
+  }
+  lines.nodes.size[axis] = static_cast<double>(near.size);
+  lines.nodes.is_logarithm[axis] = has_logarithm ? 1.0 : 0.0;
+  lines.unit[axis] = has_logarithm ? points[own.point].value.si() : 1.0;
+  lines.sign[axis] = static_cast<double>(own.sign);
 }
 
-struct Derivative {
-  double value = 0.0;
-  double missed = 0.0;
-  double noise = 0.0;
-  bool is_known = false;
-};
-
-// Of the orders from `lowest` on, the one whose noise and missed part are least. An order below `first` is no estimate
-// of the derivative: beside a lowest one, which has none but higher ones to be held against, and half of it where it is
-// the only one.
-template <class Value, class Noise2>
-Derivative best_of(std::size_t size, std::size_t lowest, std::size_t first, Value value, Noise2 noise2) {
-  Derivative best;
-  double least = INFINITY;
-  for (std::size_t p = lowest; p < size; ++p) {
-    double missed = p > first ? std::abs(value(p) - value(p - 1)) : p + 1 == size ? 0.5 * std::abs(value(p)) : 0.0;
-    // Two orders may agree by accident, three hardly.
-    for (std::size_t next = p + 1; next < std::min(size, p > first ? p + 2 : p + 3); ++next) {
-      missed = std::max(missed, std::abs(value(next) - value(p)));
-    }
-    const double all = noise2(p) + missed * missed;
-    if (all >= least) continue;
-    least = all;
-    best = {.value = value(p), .missed = missed, .noise = std::sqrt(noise2(p)), .is_known = true};
+DirectionSlopes slopes_of(const PointLines& lines) {
+  DirectionSlopes slopes;
+  for (std::size_t a = 0; a < kDirectionAxes; ++a) {
+    const double unit = lines.unit[a];
+    slopes.slope[a] = lines.sign[a] * unit * lines.found.first[a];
+    slopes.unresolved[a] = unit * lines.found.first_missed[a];
+    slopes.has_neighbours[a] = lines.size(a) > 1;
+    slopes.curvature[a] = unit * lines.found.second[a];
+    slopes.unresolved_curvature[a] = lines.size(a) > 2 ? unit * lines.found.second_missed[a] : -1.0;  // guessed below
+    slopes.curvature_noise[a] = unit * std::sqrt(lines.found.second_noise2[a]);
   }
-  return best;
+  return slopes;
 }
 
 /// How a line bends on: what three points do not see.
@@ -164,54 +128,26 @@ struct LineBend {
 };
 using LineBends = std::array<LineBend, kDirectionAxes>;
 
-LineBend bend_of(const Nodes& nodes, const std::array<Estimate, kNodesAtMost>& e, double unit) {
-  const auto square = [&](std::size_t p) { return unit * unit * (e[p].own * e[p].own - e[p].own_noise2); };
-  LineBend bend{.has_five = nodes.size == kNodesAtMost, .is_lone = nodes.size == 3};
-  if (bend.has_five) bend.third2 = std::max(0.0, square(3));
-  if (bend.has_five) bend.fourth2 = std::max(0.0, square(4));
-  if (!bend.is_lone) return bend;
-  const double a = nodes.stop[1]->coordinate - nodes.stop[0]->coordinate;
-  const double b = nodes.stop[2]->coordinate - nodes.stop[0]->coordinate;
-  bend.per_third = std::abs(a + b) / 3.0;
-  bend.per_fourth = (a * a + a * b + b * b) / 12.0;
-  return bend;
-}
+constexpr std::size_t kOfLoneLine = 3;
 
-void read_stop(std::span<const SlopeOrdinate> ordinates, const LineStop& own, std::size_t a, DirectionSlopes& slopes,
-               LineBend& bend_on) {
-  const Nodes nodes = nodes_about(own);
-  std::array<double, kNodesAtMost> y{};
-  std::array<double, kNodesAtMost> u{};
-  bool has_logarithm = true;
-  for (std::size_t n = 0; n < nodes.size; ++n) has_logarithm &= ordinates[nodes.stop[n]->point].has_logarithm;
-  for (std::size_t n = 0; n < nodes.size; ++n) {
-    const SlopeOrdinate& o = ordinates[nodes.stop[n]->point];
-    y[n] = has_logarithm ? o.log_f : o.f;
-    u[n] = has_logarithm ? o.u_log : o.u;
-  }
-  const double unit = has_logarithm ? ordinates[own.point].f : 1.0;
-  const double bend = has_logarithm ? 1.0 : 0.0;  // f'' / f = g'' + g'^2
-  const auto e = estimates(nodes, y, u);
-  const Derivative first = best_of(
-      nodes.size, 1, 0, [&](std::size_t p) { return e[p].first; }, [&](std::size_t p) { return e[p].first_noise2; });
-  const Derivative second = best_of(
-      nodes.size, 2, 2, [&](std::size_t p) { return e[p].second + bend * e[p].first * e[p].first; },
-      [&](std::size_t p) { return e[p].second_noise2; });
-  slopes.slope[a] = static_cast<double>(own.sign) * unit * first.value;
-  slopes.unresolved[a] = unit * first.missed;
-  slopes.has_neighbours[a] = first.is_known;
-  slopes.curvature[a] = unit * second.value;
-  slopes.unresolved_curvature[a] = second.is_known ? unit * second.missed : -1.0;  // guessed below
-  slopes.curvature_noise[a] = unit * second.noise;
-  bend_on = bend_of(nodes, e, unit);
+LineBend bend_of(const PointLines& lines, std::size_t axis) {
+  const double unit2 = lines.unit[axis] * lines.unit[axis];
+  const double a = lines.nodes.x[1][axis];
+  const double b = lines.nodes.x[2][axis];
+  return {.has_five = lines.size(axis) == kNodesAtMost,
+          .third2 = unit2 * lines.found.third2[axis],
+          .fourth2 = unit2 * lines.found.fourth2[axis],
+          .is_lone = lines.size(axis) == kOfLoneLine,
+          .per_third = std::abs(a + b) / 3.0,
+          .per_fourth = (a * a + a * b + b * b) / 12.0};
 }
 
 // Where phi means nothing, or where the mirror plane makes the function even, its slope is 0 without any neighbour.
-bool has_no_phi_slope(const Geometry& g, bool isotropic) {
-  if (plan_key(g.theta_r) == 0) return true;
+bool has_no_phi_slope(const DirectionKey& key, bool isotropic) {
+  constexpr std::int32_t kHalfTurn = 180000;
+  if (key.theta_r == 0) return true;
   if (!isotropic) return false;
-  const std::int64_t d = plan_key(azimuth_between(g, true));
-  return plan_key(g.theta_i) == 0 || d == 0 || d == 180000;
+  return key.theta_i == 0 || key.dphi == 0 || key.dphi == kHalfTurn;
 }
 
 constexpr std::size_t kI = 0;
@@ -227,7 +163,13 @@ double off_plane(const Geometry& g, bool isotropic) {
   return isotropic ? std::abs(std::sin(azimuth_between(g, true).si())) : 1.0;
 }
 
-void guess_slopes(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
+// Across a pole f changes towards the other direction; elsewhere nobody asks.
+bool is_near_pole(const DirectionKey& key) {
+  constexpr std::int32_t kNear = 10000;  // 10 deg in 0.001 deg: further than any mounting turns a surface
+  return std::min(std::abs(key.theta_i), std::abs(key.theta_r)) < kNear;
+}
+
+void guess_slopes(const SlopePoint& point, const DirectionKey& key, bool isotropic, DirectionSlopes& s) {
   const auto size = [&](std::size_t a) { return root_sum(s.slope[a], s.unresolved[a]); };
   if (!s.has_neighbours[kI] && !s.has_neighbours[kR]) {
     s.unresolved[kI] = s.unresolved[kR] = std::abs(point.value.si());
@@ -237,13 +179,13 @@ void guess_slopes(const SlopePoint& point, bool isotropic, DirectionSlopes& s) {
     s.unresolved[kR] = size(kI);
   }
   const double steepest = std::max(size(kI), size(kR));
-  if (has_no_phi_slope(point.planned, isotropic)) {
+  if (has_no_phi_slope(key, isotropic)) {
     s.slope[kPhi] = s.unresolved[kPhi] = 0.0;
     s.has_neighbours[kPhi] = true;
   } else if (!s.has_neighbours[kPhi]) {
     s.unresolved[kPhi] = steepest * smaller_sine(point.reported);
   }
-  s.across_pole.fill(steepest * off_plane(point.planned, isotropic));
+  if (is_near_pole(key)) s.across_pole.fill(steepest * off_plane(point.planned, isotropic));
 }
 
 // Of three points along phi: f as a function of m cos(dphi), whose derivatives are those along theta.
@@ -259,9 +201,13 @@ double missed_along_phi(const LineBend& lone, const LineBend& like, const SlopeP
   return std::hypot(lone.per_third * odd, lone.per_fourth * even);
 }
 
-void guess_lone_lines(const SlopePoint& point, bool isotropic, const LineBends& bends, DirectionSlopes& s) {
+void guess_lone_lines(const SlopePoint& point, bool isotropic, const PointLines& lines, DirectionSlopes& s) {
+  const bool has_lone =
+      lines.size(kI) == kOfLoneLine || lines.size(kR) == kOfLoneLine || lines.size(kPhi) == kOfLoneLine;
+  if (!has_lone) return;
+  const LineBends bends{bend_of(lines, kI), bend_of(lines, kR), bend_of(lines, kPhi)};
   const LineBend& like = bends[kR].has_five ? bends[kR] : bends[kI];
-  if (!like.has_five) return;  // half of the derivative stands, as best_of has it
+  if (!like.has_five) return;  // half of the derivative stands
   for (const std::size_t a : {kI, kR}) {
     if (!bends[a].is_lone) continue;
     s.unresolved_curvature[a] =
@@ -271,7 +217,7 @@ void guess_lone_lines(const SlopePoint& point, bool isotropic, const LineBends& 
 }
 
 // A lobe about any direction bends alike along both thetas.
-void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
+void guess_curvatures(const SlopePoint& point, const DirectionKey& key, DirectionSlopes& s) {
   const auto is_known = [&](std::size_t a) { return s.unresolved_curvature[a] >= 0.0; };
   const std::array<bool, 2> known{is_known(kI), is_known(kR)};
   if (!known[0] && !known[1]) {
@@ -285,7 +231,7 @@ void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
     s.curvature_noise[unknown] = s.curvature_noise[other];
     s.unresolved_curvature[unknown] = std::hypot(s.unresolved_curvature[other], 0.5 * s.curvature[other]);
   }
-  const bool is_even = plan_key(point.planned.theta_r) == 0 || plan_key(point.planned.theta_i) == 0;
+  const bool is_even = key.theta_r == 0 || key.theta_i == 0;
   s.has_bend_along_phi = is_even || is_known(kPhi);
   if (is_even || !s.has_bend_along_phi) {
     s.curvature[kPhi] = s.unresolved_curvature[kPhi] = s.curvature_noise[kPhi] = 0.0;
@@ -295,32 +241,32 @@ void guess_curvatures(const SlopePoint& point, DirectionSlopes& s) {
 }  // namespace
 
 SlopeField::SlopeField(std::span<const SlopePoint> points, bool isotropic, int threads)
-    : points_(points), isotropic_(isotropic), ordinates_(points.size()) {
+    : points_(points), isotropic_(isotropic), keys_(points.size()), ordinates_(points.size()) {
   constexpr std::size_t kPointsAtOnce = 4096;
-  LargeArray<DirectionKey> keys(points.size());
   for_blocks((points.size() + kPointsAtOnce - 1) / kPointsAtOnce, threads, [&](std::size_t block) {
     const std::size_t last = std::min(points.size(), (block + 1) * kPointsAtOnce);
     for (std::size_t n = block * kPointsAtOnce; n < last; ++n) {
-      keys[n] = direction_key(points[n], isotropic);
+      keys_[n] = direction_key(points[n], isotropic);
       ordinates_[n] = ordinate_of(points[n]);
     }
   });
   for_blocks(kDirectionAxes, threads, [&](std::size_t axis) {
-    lines_[axis] = std::make_unique<DirectionLines>(points, keys, isotropic, static_cast<DirectionAxis>(axis));
+    lines_[axis] = std::make_unique<DirectionLines>(points, keys_, isotropic, static_cast<DirectionAxis>(axis));
   });
 }
 
 SlopeField::~SlopeField() = default;
 
 DirectionSlopes SlopeField::at(std::size_t n) const {
-  DirectionSlopes slopes;
-  LineBends bends;
+  PointLines lines;
   for (std::size_t axis = 0; axis < kDirectionAxes; ++axis) {
-    read_stop(ordinates_, lines_[axis]->stop_of(n), axis, slopes, bends[axis]);
+    read_line(points_, ordinates_, lines_[axis]->stop_of(n), axis, lines);
   }
-  guess_slopes(points_[n], isotropic_, slopes);
-  guess_lone_lines(points_[n], isotropic_, bends, slopes);
-  guess_curvatures(points_[n], slopes);
+  differentiate(lines.nodes, lines.found);
+  DirectionSlopes slopes = slopes_of(lines);
+  guess_slopes(points_[n], keys_[n], isotropic_, slopes);
+  guess_lone_lines(points_[n], isotropic_, lines, slopes);
+  guess_curvatures(points_[n], keys_[n], slopes);
   return slopes;
 }
 

@@ -37,19 +37,19 @@ struct DirectionSlopes {
       has_neighbours{};  ///< false: no other point on this line; `slope` is 0, `unresolved` a guess
   /// Whether any points say how f bends with phi; false: `curvature` of phi is 0 and counts for nothing.
   bool has_bend_along_phi = false;
-  /// At the pole of theta_i or theta_r: the size of the slope across the plane of phi, along which `slope` goes.
+  /// Within 10 deg of the pole of theta_i or theta_r, else 0: the size of the slope across the plane of phi, along
+  /// which `slope` goes.
   std::array<double, 2> across_pole{};
 };
 
-/// A value as it is to be differentiated: ln f where it stands clear of zero, and f itself.
+/// ln f of a value that stands clear of zero, to be differentiated in its place.
 struct SlopeOrdinate {
-  double f = 0.0;
-  double u = 0.0;
   double log_f = 0.0;
-  double u_log = 0.0;
-  bool has_logarithm = false;
+  double u_log = -1.0;  ///< negative: the value has no logarithm
+  [[nodiscard]] bool has_logarithm() const { return u_log >= 0.0; }
 };
 
+struct DirectionKey;
 class DirectionLines;
 
 /// Slopes from the measured points alone; no model of the surface. For each point and axis:
@@ -88,6 +88,7 @@ class SlopeField {
  private:
   std::span<const SlopePoint> points_;
   bool isotropic_;
+  LargeArray<DirectionKey> keys_;
   LargeArray<SlopeOrdinate> ordinates_;
   std::array<std::unique_ptr<const DirectionLines>, kDirectionAxes> lines_;
 };

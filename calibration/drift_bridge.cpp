@@ -3,13 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace gonio::calibration {
 namespace {
 
-double mode_at(std::size_t k, double p) {
-  const double turns = static_cast<double>(k + 1) * std::numbers::pi;
-  return std::numbers::sqrt2 * std::sin(turns * p) / turns;
+// sin(k x) of k = 1, 2, .. by sin((k + 1) x) = 2 cos(x) sin(k x) - sin((k - 1) x): one sine and one cosine for all.
+std::array<double, kBridgeModes> modes_at(double p) {
+  const double cosine = std::cos(std::numbers::pi * p);
+  double before = 0.0;
+  double sine = std::sin(std::numbers::pi * p);
+  std::array<double, kBridgeModes> modes{};
+  for (std::size_t k = 0; k < kBridgeModes; ++k) {
+    modes[k] = std::numbers::sqrt2 * sine / (static_cast<double>(k + 1) * std::numbers::pi);
+    before = std::exchange(sine, 2.0 * cosine * sine - before);
+  }
+  return modes;
 }
 
 // What the modes leave of the variance.
@@ -21,15 +30,15 @@ void add_rest(double variance, BridgeParts& parts) {
 }  // namespace
 
 BridgeParts bridge_at(double p) {
-  BridgeParts parts;
-  for (std::size_t k = 0; k < kBridgeModes; ++k) parts.mode[k] = mode_at(k, p);
+  BridgeParts parts{.mode = modes_at(p)};
   add_rest(p * (1.0 - p), parts);
   return parts;
 }
 
 BridgeParts bridge_between(double p, double q) {
-  BridgeParts parts;
-  for (std::size_t k = 0; k < kBridgeModes; ++k) parts.mode[k] = mode_at(k, q) - mode_at(k, p);
+  BridgeParts parts{.mode = modes_at(q)};
+  const auto at_p = modes_at(p);
+  for (std::size_t k = 0; k < kBridgeModes; ++k) parts.mode[k] -= at_p[k];
   const double apart = std::abs(q - p);
   add_rest(apart * (1.0 - apart), parts);
   return parts;

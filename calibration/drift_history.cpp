@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "calibration/visit_search.h"
+
 namespace gonio::calibration {
 namespace {
 
@@ -65,6 +67,7 @@ DriftHistory::DriftHistory(const ScanReadings& scan, const ReadingContext& conte
   }
   std::ranges::sort(visits_, {}, &ReferenceVisit::at);
   find_wander();
+  for (std::size_t n = 0; n + 1 < visits_.size(); ++n) intervals_.push_back(between(n));
 }
 
 // What the visit lies off the line between its neighbours, and the visits' own noise of that.
@@ -169,12 +172,12 @@ DriftLevel DriftHistory::between(std::size_t n) const {
 
 std::optional<DriftLevel> DriftHistory::at(Instant when) const {
   if (visits_.size() < 2) return std::nullopt;
-  const auto next = std::ranges::lower_bound(visits_, when, {}, &ReferenceVisit::at);
+  const auto next = visits_.begin() + static_cast<std::ptrdiff_t>(first_not_before(visits_, when));
   const bool is_early = next == visits_.begin();
   const bool is_late = next == visits_.end();
   const ReferenceVisit& a = is_early ? visits_.front() : *(is_late ? next - 2 : next - 1);
   const ReferenceVisit& b = is_early ? visits_[1] : *(is_late ? next - 1 : next);
-  DriftLevel found = between(static_cast<std::size_t>(&a - visits_.data()));
+  DriftLevel found = intervals_[static_cast<std::size_t>(&a - visits_.data())];
   const double w = in_seconds(when - a.at) / in_seconds(b.at - a.at);
   if (is_early || is_late) {
     found.level = is_early ? a.level : b.level;

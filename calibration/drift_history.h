@@ -80,7 +80,8 @@ class DriftHistory {
 
   std::vector<ReferenceVisit> visits_;  ///< in time order
   std::optional<double> limit_;
-  std::vector<Wander> wanders_;  ///< of each interval; empty: too few visits
+  std::vector<Wander> wanders_;        ///< of each interval; empty: too few visits
+  std::vector<DriftLevel> intervals_;  ///< what `between` says of each
   double wander_dof_ = 0.0;
 };
 

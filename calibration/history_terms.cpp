@@ -36,6 +36,7 @@ class DriftTerms {
     add_visit(reference.after, reference.weight_after / reference.level);
     add_visit(sample.before, -(1.0 - sample.weight_after) / sample.level);
     add_visit(sample.after, -sample.weight_after / sample.level);
+    if (sample.wander == 0.0 && reference.wander == 0.0 && sample.is_between() && reference.is_between()) return;
     const bool is_same = sample.before == reference.before && sample.after == reference.after;
     if (!is_same) {
       add_missed(sample, 1.0, bridge_at(sample.weight_after), sample.beyond);

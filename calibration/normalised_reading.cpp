@@ -245,7 +245,17 @@ void finish(const FrameTerm& sum, double monitor2, double frames, NormalisedRead
     share.dq_dlevel /= sum.light;
     share.light_share /= sum.light;
   }
-  std::ranges::sort(out.darks, {}, &DarkShare::rung);
+  if (out.darks.size() > 1) std::ranges::sort(out.darks, {}, &DarkShare::rung);
+}
+
+// As new, but for the memory of its darks.
+void begin_anew(const RawReading& reading, NormalisedReading& out) {
+  std::vector<DarkShare> darks = std::move(out.darks);
+  darks.clear();
+  out = {.has_saturated = reading.has_saturated,
+         .darks = std::move(darks),
+         .geometry = mean_geometry(reading.frames),
+         .at = reading.at};
 }
 
 // What light acts through: of two frames of one reading the one with more saturates first.
@@ -271,18 +281,17 @@ RawReading without_saturated(const RawReading& reading) {
 
 }  // namespace
 
-Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context) {
+Result<void> normalise(const RawReading& reading, const ReadingContext& context, NormalisedReading& out) {
   if (std::ranges::any_of(reading.frames, is_saturated)) {
     const RawReading rest = without_saturated(reading);
     if (!rest.frames.empty()) {
-      auto shorter = normalise(rest, context);
-      if (shorter) shorter->has_saturated = true;
+      auto shorter = normalise(rest, context, out);
+      out.has_saturated = true;
       return shorter;
     }
   }
   GONIO_TRY(check(reading));
-  NormalisedReading out{
-      .has_saturated = reading.has_saturated, .geometry = mean_geometry(reading.frames), .at = reading.at};
+  begin_anew(reading, out);
   std::vector<FrameTerm> terms;  // of a single frame nothing is to be judged
   FrameTerm sum;
   double monitor2 = 0.0;
@@ -302,6 +311,12 @@ Result<NormalisedReading> normalise(const RawReading& reading, const ReadingCont
   judge_frames(terms, sum.light, *context.detector, out);
   if (context.stray != nullptr) out.stray = context.stray->at(reading.light_class, reading.at);
   if (out.stray && !context.left_out.stray) out.q -= out.stray->level;
+  return {};
+}
+
+Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context) {
+  NormalisedReading out;
+  GONIO_TRY(normalise(reading, context, out));
   return out;
 }
 

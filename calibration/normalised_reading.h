@@ -54,6 +54,8 @@ struct NormalisedReading {
 /// frame, no pixel, no light on the monitor, or no dark at this exposure and gain). Variance of a pixel of a frame, in
 /// DN^2: dark part + net / K (EMVA 1288 release 4.0, eq 5), K = electrons_per_dn.
 [[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const ReadingContext& context);
+/// Likewise, into memory that has served another reading; after an error nothing in it counts.
+[[nodiscard]] Result<void> normalise(const RawReading& reading, const ReadingContext& context, NormalisedReading& out);
 /// Without any background. Both must outlive the call.
 [[nodiscard]] Result<NormalisedReading> normalise(const RawReading& reading, const DarkHistory& darks,
                                                   const DetectorModel& detector);

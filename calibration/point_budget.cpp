@@ -134,11 +134,12 @@ class PointTerms {
     }
     const Geometry& g = p_.reference.geometry;
     const Wavelength wavelength = p_.wavelength;
+    const ShapeModePlace at(g);
     for (std::size_t k = 0; k < standard_.modes().size(); ++k) {
       const ShapeMode& mode = standard_.modes()[k];
       terms_.shared(
           {ComponentSource::ShapeMode, static_cast<std::int64_t>(k)}, mode.u, "1",
-          f * standard_.mode(k, g, wavelength) * mode.u, [&] { return "shape mode " + mode.name; }, traits);
+          f * standard_.mode(k, at, wavelength) * mode.u, [&] { return "shape mode " + mode.name; }, traits);
     }
     terms_.shared(
         {ComponentSource::ShapeIntegral}, standard_.u_integral(), "1", f * standard_.u_integral(),
@@ -296,6 +297,9 @@ BudgetRules::BudgetRules(const InstrumentModel& instrument, const ReferenceStand
     zero_factor_ = covariance_factor(angles.zero_covariance, kDirectionAxes);
     for (std::size_t a = 0; a < kDirectionAxes; ++a) u_zero_[a] = std::sqrt(angles.zero_covariance[4 * a]);
   }
+  for (std::size_t a = 0; a < kDirectionAxes; ++a) {
+    u_angle_[a] = root_sum(u_zero_[a], std::sqrt(moves_of(a)) * angles.u_repeat.si());
+  }
   const LinearityModel& linearity = instrument.detector.linearity;
   const std::size_t n = std::min(linearity.coefficients.size(), kLinearityTerms) + 1;
   if (linearity.covariance.size() == n * n) linearity_factor_ = covariance_factor(linearity.covariance, n);
@@ -313,11 +317,10 @@ void BudgetRules::add_terms(const PairedPoint& point, const DirectionSlopes& slo
 }
 
 Nonlinearity BudgetRules::nonlinearity(const PairedPoint& point, const DirectionSlopes& slopes) const {
-  Nonlinearity bent;
+  Nonlinearity bent{.u_angle = u_angle_};
   for (std::size_t a = 0; a < kDirectionAxes; ++a) {
     bent.slope[a] = slopes.slope[a] - point.value * point.standard.slope[a];
     bent.curvature[a] = slopes.curvature[a];
-    bent.u_angle[a] = root_sum(u_zero_[a], std::sqrt(moves_of(a)) * instrument_.angles.u_repeat.si());
   }
   return bent;
 }

@@ -35,6 +35,7 @@ class BudgetRules {
   std::vector<double> zero_factor_;       ///< covariance_factor of the zeros; empty: independent
   std::vector<double> linearity_factor_;  ///< of the coefficients and t0; empty: none
   std::array<double, kDirectionAxes> u_zero_{};
+  std::array<double, kDirectionAxes> u_angle_{};  ///< zero and repeatability
   std::string instrument_owner_;
   std::string standard_owner_;
 };

@@ -14,28 +14,12 @@
 namespace gonio::calibration {
 namespace {
 
-// d ln f_ref / d angle of the shape table, over a quarter of a degree, within the table.
-double slope_of_shape(const ReferenceStandard& standard, Wavelength wavelength, const Geometry& at, double shape,
-                      std::size_t axis) {
+// A quarter of a degree about the geometry, within the table.
+ShapeSteps steps_about(const ReferenceStandard& standard, const Geometry& at) {
   constexpr Angle kStep = degrees(0.25);
-  Geometry low = at;
-  Geometry high = at;
-  const auto angle = [&](Geometry& g) -> Angle& { return axis == 0 ? g.theta_i : axis == 1 ? g.theta_r : g.phi_r; };
-  angle(low) -= kStep;
-  angle(high) += kStep;
-  if (axis < 2) angle(high) = std::min(angle(high), axis == 0 ? standard.last_theta_i() : standard.last_theta_r());
-  const double change = standard.shape(high, wavelength) - standard.shape(low, wavelength);
-  return change / ((angle(high) - angle(low)).si() * shape);
-}
-
-StandardView view_of(const ReferenceStandard& standard, Wavelength wavelength, const Geometry& at,
-                     const LeftOut& left_out) {
-  StandardView view{.rho = standard.reflectance(wavelength).value()};
-  if (left_out.shape) return view;
-  view.shape = standard.shape(at, wavelength);
-  for (std::size_t a = 0; a < kDirectionAxes; ++a)
-    view.slope[a] = slope_of_shape(standard, wavelength, at, view.shape, a);
-  return view;
+  return {{{at.theta_i - kStep, std::min(at.theta_i + kStep, standard.last_theta_i())},
+           {at.theta_r - kStep, std::min(at.theta_r + kStep, standard.last_theta_r())},
+           {at.phi_r - kStep, at.phi_r + kStep}}};
 }
 
 Error no_light(const PlannedPoint& point, std::int64_t reading, const NormalisedReading& q, bool is_power) {
@@ -95,9 +79,7 @@ Result<void> add_reference(PairedPoint& pair, const ReadingPair& readings, const
     pair.is_anchor_drifted = found->is_large;
     return {};
   }
-  auto reference = normalise(*readings.reference, context.histories->context());
-  if (!reference) return failure(std::move(reference).error());
-  pair.reference = std::move(*reference);
+  GONIO_TRY(normalise(*readings.reference, context.histories->context(), pair.reference));
   pair.reference_id = readings.reference->id;
   pair.reference_is_shared = readings.is_shared;
   return {};
@@ -112,7 +94,7 @@ void take_geometry(PairedPoint& pair, GeometryRatio ratio) {
                     std::make_move_iterator(ratio.terms.end()));
 }
 
-Result<PairedPoint> by_direct_beam(PairedPoint pair, const EquationContext& context) {
+Result<void> by_direct_beam(PairedPoint& pair, const EquationContext& context) {
   const InstrumentModel& instrument = *context.instrument;
   const MountingModel* mounting = instrument.mounting && !context.left_out.mounting ? &*instrument.mounting : nullptr;
   const double nearness = place_on(pair.sample, instrument.angles, mounting != nullptr ? &mounting->sample : nullptr,
@@ -128,20 +110,32 @@ Result<PairedPoint> by_direct_beam(PairedPoint pair, const EquationContext& cont
   pair.standard.rho.value = 1.0;
   pair.dvalue_dq = ratio->dvalue_dq / nearness;
   pair.value = pair.dvalue_dq * pair.sample.q;
-  return pair;
+  return {};
+}
+
+// As new, but for the memory of its lists.
+void begin_anew(const PlannedPoint& point, ReferenceMode mode, PairedPoint& pair) {
+  std::vector<DarkShare> of_sample = std::move(pair.sample.darks);
+  std::vector<DarkShare> of_reference = std::move(pair.reference.darks);
+  std::vector<RelativeTerm> terms = std::move(pair.terms);
+  of_reference.clear();
+  terms.clear();
+  pair = {.mode = mode,
+          .wavelength = point.wavelength,
+          .polarisation = point.polarisation,
+          .is_blocked = point.is_blocked,
+          .terms = std::move(terms)};
+  pair.sample.darks = std::move(of_sample);
+  pair.reference.darks = std::move(of_reference);
 }
 
 }  // namespace
 
-Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& readings, const EquationContext& context) {
-  auto sample = normalise(*readings.sample, context.histories->context());
-  if (!sample) return failure(std::move(sample).error());
-  PairedPoint pair{.mode = context.histories->mode(),
-                   .sample = std::move(*sample),
-                   .wavelength = point.wavelength,
-                   .polarisation = point.polarisation,
-                   .is_blocked = point.is_blocked};
-  if (pair.mode == ReferenceMode::Absolute) return by_direct_beam(std::move(pair), context);
+Result<void> equate(const PlannedPoint& point, const ReadingPair& readings, const EquationContext& context,
+                    PairedPoint& pair) {
+  begin_anew(point, context.histories->mode(), pair);
+  GONIO_TRY(normalise(*readings.sample, context.histories->context(), pair.sample));
+  if (pair.mode == ReferenceMode::Absolute) return by_direct_beam(pair, context);
   GONIO_TRY(add_reference(pair, readings, context));
   const double nearness = place_both(pair, *context.instrument, !context.left_out.mounting);
   const ReferenceStandard& standard = *context.standard;
@@ -150,7 +144,8 @@ Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& reading
     return failure(no_light(point, pair.reference_id, pair.reference, context.instrument->detector.power.has_value()));
   }
   pair.is_beyond_standard = standard.is_extrapolated(pair.reference.geometry);
-  pair.standard = view_of(standard, point.wavelength, pair.reference.geometry, context.left_out);
+  pair.standard.rho = standard.reflectance(point.wavelength).value();
+  if (!context.left_out.shape) pair.standard.shape = standard.shape(pair.reference.geometry, point.wavelength);
   take_geometry(pair,
                 geometry_ratio(pair.sample.geometry, pair.reference.geometry, *context.instrument, context.left_out));
   pair.geometry_ratio *= nearness;
@@ -160,7 +155,16 @@ Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& reading
     pair.drift_ratio = pair.reference_drift->level / pair.sample_drift->level;
   }
   evaluate(pair, context);
-  return pair;
+  return {};
+}
+
+void add_standard_slopes(const EquationContext& context, PairedPoint& pair) {
+  if (pair.mode == ReferenceMode::Absolute || context.left_out.shape) return;
+  const ShapeSteps steps = steps_about(*context.standard, pair.reference.geometry);
+  const ShapeRises rises = context.standard->shape_rises(pair.reference.geometry, pair.wavelength, steps);
+  for (std::size_t a = 0; a < kDirectionAxes; ++a) {
+    pair.standard.slope[a] = rises[a] / ((steps[a][1] - steps[a][0]).si() * pair.standard.shape);
+  }
 }
 
 }  // namespace gonio::calibration

@@ -73,7 +73,12 @@ struct EquationContext {
 /// In anchor mode q_ref is AnchorHistory's; by the direct beam f_s is absolute_factor.h's, without stated stray light.
 /// The sample's reading must be there, the reference's in same-geometry mode. Errors: those of normalise, of the
 /// standard's reach, of AnchorHistory and absolute_ratio; IncompleteData (no light from the reference).
-[[nodiscard]] Result<PairedPoint> equate(const PlannedPoint& point, const ReadingPair& readings,
-                                         const EquationContext& context);
+/// `pair` may have served another point: nothing of that is left but the memory of its lists. Its value is complete,
+/// StandardView::slope is 0 until add_standard_slopes.
+[[nodiscard]] Result<void> equate(const PlannedPoint& point, const ReadingPair& readings,
+                                  const EquationContext& context, PairedPoint& pair);
+
+/// The standard's own slopes, which the value does not need and its budget does.
+void add_standard_slopes(const EquationContext& context, PairedPoint& pair);
 
 }  // namespace gonio::calibration

@@ -93,6 +93,18 @@ Result<void> ReferenceStandard::check_shape_wavelength(Wavelength wavelength) co
                    definition_.shape_wavelengths_at));
 }
 
+ShapeRises ReferenceStandard::shape_rises(const Geometry& g, Wavelength wavelength, const ShapeSteps& steps) const {
+  const auto add = [&](std::size_t n, double weight, ShapeRises& sum) {
+    const ShapeRises rises = definition_.shapes[n].table.rises(g, steps);
+    for (std::size_t axis = 0; axis < sum.size(); ++axis) sum[axis] += weight * scales_[n] * rises[axis];
+  };
+  const Place place = definition_.shapes.size() == 1 ? Place{} : place_of(wavelength);
+  ShapeRises sum{};
+  add(place.below, 1.0 - place.fraction, sum);
+  if (place.fraction > 0.0) add(place.below + 1, place.fraction, sum);
+  return sum;
+}
+
 ReferenceStandard::Place ReferenceStandard::place_of(Wavelength wavelength) const {
   const auto& shapes = definition_.shapes;
   const auto above =

@@ -73,6 +73,8 @@ class ReferenceStandard {
   [[nodiscard]] double shape(const Geometry& g, Wavelength wavelength) const {
     return between(wavelength, [&](std::size_t n) { return scales_[n] * definition_.shapes[n].table.value(g); });
   }
+  /// The rises of s about G (ShapeTable::rises); beyond the table its edge holds.
+  [[nodiscard]] ShapeRises shape_rises(const Geometry& g, Wavelength wavelength, const ShapeSteps& steps) const;
   /// Standard uncertainty of s(G) between the nodes of its table, where a straight line stands in for a smooth shape.
   [[nodiscard]] double u_interpolation(const Geometry& g, Wavelength wavelength) const {
     return between(wavelength,
@@ -81,7 +83,10 @@ class ReferenceStandard {
   /// The relative change of s(G) for an amplitude 1 of mode k that keeps the certificate's reflectance: M_k(G) - <M_k>,
   /// the mean weighted with s over the certificate's geometry. One amplitude holds for all wavelengths.
   [[nodiscard]] double mode(std::size_t k, const Geometry& g, Wavelength wavelength) const {
-    return definition_.modes[k].value(g) - between(wavelength, [&](std::size_t n) { return mode_means_[n][k]; });
+    return mode(k, ShapeModePlace(g), wavelength);
+  }
+  [[nodiscard]] double mode(std::size_t k, const ShapeModePlace& at, Wavelength wavelength) const {
+    return definition_.modes[k].value(at) - between(wavelength, [&](std::size_t n) { return mode_means_[n][k]; });
   }
 
  private:

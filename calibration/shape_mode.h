@@ -16,6 +16,14 @@ namespace gonio::calibration {
 ///   Opposition  exp(-(xi / width)^2), xi the phase angle: the hot spot
 enum class ShapeModeKind : std::uint8_t { Limb, Forward, Sideways, Opposition };
 
+/// A geometry as the modes see it: what several of them need, worked out once.
+struct ShapeModePlace {
+  explicit ShapeModePlace(const Geometry& g);
+  Geometry geometry;
+  double sin_i = 0.0;
+  double sin_r = 0.0;
+};
+
 /// One angular mode with the standard deviation of its amplitude: the real shape is s (1 + a M), a ~ (0, u).
 struct ShapeMode {
   std::string name;
@@ -24,7 +32,8 @@ struct ShapeMode {
   Angle width{};   ///< of Opposition
 
   /// M(G), before the certificate's own geometry is taken out of it (ReferenceStandard::mode).
-  [[nodiscard]] double value(const Geometry& g) const;
+  [[nodiscard]] double value(const Geometry& g) const { return value(ShapeModePlace(g)); }
+  [[nodiscard]] double value(const ShapeModePlace& at) const;
 };
 
 }  // namespace gonio::calibration

@@ -94,10 +94,33 @@ double ShapeTable::across(const std::vector<double>& table, const Cell& cell, st
   return between(along_fast(n), along_fast(n + steps_[slow]), cell[slow].fraction);
 }
 
-double ShapeTable::value(const Geometry& g) const {
-  const Cell cell = cell_of(place_of(g));
+double ShapeTable::value_in(const Cell& cell) const {
   const Bracket& i = cell[0];
   return between(across(values_, cell, 0, i.below), across(values_, cell, 0, i.below + 1), i.fraction);
+}
+
+double ShapeTable::value(const Geometry& g) const {
+  return value_in(cell_of(place_of(g)));
+}
+
+// A step changes one bracket of the cell, but where a theta goes below zero and turns phi.
+ShapeRises ShapeTable::rises(const Geometry& g, const ShapeSteps& steps) const {
+  const Cell cell = cell_of(place_of(g));
+  const bool is_off_pole = steps[0][0] >= Angle{} && steps[1][0] >= Angle{};
+  const auto moved = [&](std::size_t axis, Angle to) {
+    Geometry at = g;
+    (axis == 0 ? at.theta_i : axis == 1 ? at.theta_r : at.phi_r) = to;
+    const Place place = place_of(at);
+    if (!is_off_pole) return value_in(cell_of(place));
+    Cell next = cell;
+    next[axis] = finders_[axis].bracket(grid(axis), place[axis]);
+    return value_in(next);
+  };
+  ShapeRises rises{};
+  for (std::size_t axis = 0; axis < steps.size(); ++axis) {
+    rises[axis] = moved(axis, steps[axis][1]) - moved(axis, steps[axis][0]);
+  }
+  return rises;
 }
 
 double ShapeTable::interpolation_error(const Geometry& g) const {

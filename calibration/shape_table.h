@@ -9,6 +9,12 @@
 
 namespace gonio::calibration {
 
+/// Where a shape's rises begin and end: [0] is below, [1] above, along theta_i, theta_r and phi_r.
+using ShapeSteps = std::array<std::array<Angle, 2>, 3>;
+
+/// Along theta_i, theta_r and phi_r: a shape at the step's end less that at its beginning.
+using ShapeRises = std::array<double, 3>;
+
 /// The angular shape of an isotropic standard on a grid, linear in each of theta_i, theta_r and dphi = |phi_r - phi_i|
 /// folded to [0, 180 deg] (0 towards retro-reflection, 180 deg towards specular). Beyond the last theta its edge holds.
 /// A theta slightly below zero, as encoders give it about the normal, is the same direction with phi turned by 180 deg.
@@ -22,6 +28,8 @@ class ShapeTable {
              std::vector<double> values);
 
   [[nodiscard]] double value(const Geometry& g) const;
+  /// Along each angle with the two others as they are in g.
+  [[nodiscard]] ShapeRises rises(const Geometry& g, const ShapeSteps& steps) const;
   /// How far `value` may be from a smooth shape through the same nodes: t (1 - t) h^2 / 2 times the larger second
   /// derivative that the neighbouring nodes show, summed over the axes. 0 at the nodes. In the table's unit.
   [[nodiscard]] double interpolation_error(const Geometry& g) const;
@@ -55,6 +63,7 @@ class ShapeTable {
 
   [[nodiscard]] static Place place_of(const Geometry& g);
   [[nodiscard]] Cell cell_of(const Place& place) const;
+  [[nodiscard]] double value_in(const Cell& cell) const;
   [[nodiscard]] double across(const std::vector<double>& table, const Cell& cell, std::size_t axis,
                               std::size_t node) const;
   [[nodiscard]] std::vector<double> bends_along(std::size_t axis) const;

@@ -50,8 +50,10 @@ void equate_all(const ScanReadings& scan, const Inputs& with, const std::vector<
   const EquationContext context{
       .histories = &histories, .instrument = &with.instrument, .standard = &with.standard, .left_out = {}};
   for_blocks(pairs.size() / kPointsAtOnce, 0, [&](std::size_t block) {
+    PairedPoint pair;
     for (std::size_t n = block * kPointsAtOnce; n < (block + 1) * kPointsAtOnce; ++n) {
-      if (!equate(scan.points[n], pairs[n], context)) std::exit(2);
+      if (!equate(scan.points[n], pairs[n], context, pair)) std::exit(2);
+      add_standard_slopes(context, pair);
     }
   });
 }

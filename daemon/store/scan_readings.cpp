@@ -10,28 +10,20 @@
 #include <vector>
 
 #include "calibration/parallel_blocks.h"
+#include "daemon/store/reading_rows.h"
 #include "daemon/store/unfinished_scans.h"
-#include "drivers/kinematics/kinematics.h"
 
 namespace gonio::daemon {
 namespace {
 
 using calibration::PlannedPoint;
-using calibration::RawFrame;
 using calibration::RawReading;
 using calibration::ScanReadings;
 using calibration::Target;
-using stage::Axis;
-
-/// Rows of one table with from <= id < to.
-struct IdRange {
-  std::int64_t from = 0;
-  std::int64_t to = 0;
-};
 
 // [n]: what `read(connection, ranges[n])` finds on a connection of its own.
-template <class Part, class Read>
-Result<std::vector<Part>> read_parts(const std::string& path, const std::vector<IdRange>& ranges, const Read& read) {
+template <class Part, class Range, class Read>
+Result<std::vector<Part>> read_parts(const std::string& path, const std::vector<Range>& ranges, const Read& read) {
   std::vector<Part> parts(ranges.size());
   std::vector<Result<void>> outcomes(ranges.size());
   calibration::for_blocks(ranges.size(), 0, [&](std::size_t n) {
@@ -70,7 +62,7 @@ std::optional<std::int64_t> integer_or_none(Statement& query) {
 
 // Equal parts of a range, each of some thousands of rows.
 std::vector<IdRange> parts_of(IdRange range) {
-  constexpr std::int64_t kRowsOfAPart = 32768;
+  constexpr std::int64_t kRowsOfAPart = 65536;
   const std::int64_t rows = std::max<std::int64_t>(0, range.to - range.from);
   const std::int64_t parts = std::max<std::int64_t>(1, rows / kRowsOfAPart);
   std::vector<IdRange> all;
@@ -120,7 +112,7 @@ std::int64_t first_reading_from(Database& database, std::int64_t attempt, std::i
 
 // Rows are written in the order of their attempts and visits, and those of one attempt together: what lies between the
 // first rows of two attempts are whole attempts and whole visits. Rows of other scans may lie among them.
-std::vector<IdRange> reading_parts(Database& database, ScanId scan) {
+std::vector<ReadingPart> reading_parts(Database& database, ScanId scan) {
   Statement& of_visits = database.statement(
       "SELECT min(reading_id), max(reading_id) FROM visit JOIN reading USING (visit_id) WHERE scan_id = ?");
   IdRange all{0, 0};
@@ -129,16 +121,16 @@ std::vector<IdRange> reading_parts(Database& database, ScanId scan) {
     if (!of_visits.is_null(0)) all = {of_visits.integer(0), of_visits.integer(1) + 1};
   }
   const IdRange attempts = attempts_of(database, scan);
-  if (attempts.from == attempts.to) return {all};
+  if (attempts.from == attempts.to) return {{.readings = all, .attempts = attempts}};
   Statement& last = database.statement(
       "SELECT reading_id FROM reading WHERE attempt_id < ? ORDER BY attempt_id DESC, sequence DESC LIMIT 1");
   const std::int64_t end = std::max(all.to, integer_or_none(last.bind(attempts.to)).value_or(-1) + 1);
   const std::int64_t begin = first_reading_from(database, attempts.from, end);
-  std::vector<IdRange> parts;
+  std::vector<ReadingPart> parts;
   std::int64_t from = all.to == 0 ? begin : std::min(all.from, begin);
   for (const IdRange& part : parts_of(attempts)) {
     const std::int64_t to = part.to == attempts.to ? end : first_reading_from(database, part.to, end);
-    parts.push_back({from, to});
+    parts.push_back({.readings = {from, to}, .attempts = part});
     from = to;
   }
   return parts;
@@ -154,126 +146,6 @@ std::map<std::int64_t, std::int64_t> time_scales(Database& database) {
     scale_of_run[runs.integer(0)] = scale_of_boot.try_emplace(runs.text(1), runs.integer(2)).first->second;
   }
   return scale_of_run;
-}
-
-/// What the rows of a scan are read with.
-struct RowContext {
-  ScanId scan;
-  const drivers::StageConfig& stage;
-  const std::vector<PlannedPoint>& points;
-  std::map<std::int64_t, std::int64_t> scale_of_run;
-};
-
-// Columns of the query below, from the row's own frame on.
-constexpr int kFrameColumn = 7;
-constexpr int kOpenColumn = kFrameColumn + 11;
-constexpr int kCloseColumn = kOpenColumn + 6;
-constexpr int kReducedColumn = kCloseColumn + 6;
-constexpr int kPowerColumn = kReducedColumn + 4;
-constexpr const char* kReadingRows =
-    "SELECT d.reading_id, d.attempt_id, d.visit_id, coalesce(a.target, l.target), coalesce(a.point_index, "
-    "l.point_index), coalesce(a.run_id, v.run_id), d.boottime_ns, "
-    "region_n, mean_dn, m2_dn2, m3_dn3, m4_dn4, saturated, exposure_ns, gain_db, monitor_mean, monitor_se, "
-    "detector_temperature_c, "
-    "open_theta_i_counts, open_theta_r_counts, open_phi_r_counts, open_phi_i_counts, open_carriage_counts, "
-    "open_filter_wheel_counts, close_theta_i_counts, close_theta_r_counts, close_phi_r_counts, close_phi_i_counts, "
-    "close_carriage_counts, close_filter_wheel_counts, "
-    "counted_n, reduced_dn, u_noise_dn, u_maps_dn, mean_w, standard_error_w, samples, averages, range_w, "
-    "w.wavelength_nm FROM reading d LEFT JOIN attempt a ON a.attempt_id = d.attempt_id LEFT JOIN visit v ON v.visit_id "
-    "= d.visit_id LEFT JOIN visit_level l ON l.visit_id = d.visit_id LEFT JOIN frame_reduction f ON f.reading_id = "
-    "d.reading_id LEFT JOIN power_reading w ON w.reading_id = d.reading_id AND w.role = 'detector' WHERE d.reading_id "
-    ">= ?2 AND d.reading_id < ?3 AND used = 1 AND (v.scan_id = ?1 OR (a.scan_id = ?1 AND a.outcome = 'accepted')) "
-    "ORDER BY d.reading_id";
-
-// Where the point is known, the azimuths are given near its own; a dark's directions mean nothing.
-Geometry geometry_from_counts(const Statement& row, int first, const drivers::StageConfig& stage,
-                              const PlannedPoint* point) {
-  stage::PerAxis<double> positions{};
-  for (const Axis axis : stage::kAllAxes) {
-    const std::size_t a = stage::index_of(axis);
-    positions[a] = drivers::position_of(stage, axis, row.integer(first + static_cast<int>(a)));
-  }
-  if (point == nullptr) return drivers::directions(stage.kinematics, positions);
-  return drivers::directions_near(stage.kinematics, positions, point->geometry);
-}
-
-calibration::PowerReading power_from_row(const Statement& row) {
-  return {.mean_w = row.real(kPowerColumn),
-          .standard_error_w = row.real(kPowerColumn + 1),
-          .samples = static_cast<int>(row.integer(kPowerColumn + 2)),
-          .averages = static_cast<int>(row.integer(kPowerColumn + 3)),
-          .range_w = row.real(kPowerColumn + 4),
-          .wavelength = nanometres(row.real(kPowerColumn + 5))};
-}
-
-RawFrame frame_from_row(const Statement& row, const PlannedPoint* point, const drivers::StageConfig& stage) {
-  RawFrame frame;
-  frame.region = {.n = static_cast<std::uint32_t>(row.integer(kFrameColumn)),
-                  .mean = row.real(kFrameColumn + 1),
-                  .m2 = row.real(kFrameColumn + 2),
-                  .m3 = row.real(kFrameColumn + 3),
-                  .m4 = row.real(kFrameColumn + 4),
-                  .saturated = static_cast<std::uint32_t>(row.integer(kFrameColumn + 5))};
-  frame.exposure_s = in_seconds(Duration(row.integer(kFrameColumn + 6)));
-  frame.gain_db = row.real(kFrameColumn + 7);
-  frame.monitor_mean = row.real(kFrameColumn + 8);
-  frame.monitor_se = row.real(kFrameColumn + 9);
-  frame.detector_temperature_c = row.real(kFrameColumn + 10);
-  frame.at_open = geometry_from_counts(row, kOpenColumn, stage, point);
-  frame.at_close = geometry_from_counts(row, kCloseColumn, stage, point);
-  if (!row.is_null(kReducedColumn)) {
-    frame.reduced = calibration::ReducedMean{.n = static_cast<std::uint32_t>(row.integer(kReducedColumn)),
-                                             .mean_dn = row.real(kReducedColumn + 1),
-                                             .u_noise_dn = row.real(kReducedColumn + 2),
-                                             .u_maps_dn = row.real(kReducedColumn + 3)};
-  }
-  if (!row.is_null(kPowerColumn)) frame.power = power_from_row(row);
-  return frame;
-}
-
-// The reading that a row begins, without its frame.
-RawReading reading_from_row(const Statement& row, const PlannedPoint* point, const RowContext& context) {
-  const bool is_visit = row.is_null(1);
-  const auto scale = context.scale_of_run.find(row.integer(5));
-  RawReading reading;
-  reading.id = row.integer(0);
-  reading.visit_id = is_visit ? 2 * row.integer(2) + 1 : 2 * row.integer(1);
-  reading.target = row.is_null(3) ? Target::Dark : target_from_name(row.text(3)).value_or(Target::Sample);
-  if (point != nullptr) (is_visit ? reading.visited_point : reading.point_index) = point->index;
-  if (point != nullptr) reading.wavelength = point->wavelength;
-  reading.at = Instant(Duration(row.integer(6) + (scale == context.scale_of_run.end() ? 0 : scale->second)));
-  return reading;
-}
-
-double range_of(const RawFrame& frame) {
-  return frame.power ? frame.power->range_w : 0.0;
-}
-
-// Frames of one attempt or visit at one exposure, or in one range, become one reading; its time is the mean of theirs.
-void add_row(std::vector<RawReading>& readings, RawReading&& row, RawFrame&& frame) {
-  auto reading = readings.rbegin();
-  for (; reading != readings.rend() && reading->visit_id == row.visit_id; ++reading) {
-    const RawFrame& first = reading->frames.front();
-    if (first.exposure_s != frame.exposure_s || range_of(first) != range_of(frame)) continue;
-    reading->frames.push_back(std::move(frame));
-    reading->at += (row.at - reading->at) / static_cast<std::int64_t>(reading->frames.size());
-    return;
-  }
-  readings.push_back(std::move(row));
-  readings.back().frames.push_back(std::move(frame));
-}
-
-std::vector<RawReading> read_rows(Database& database, IdRange range, const RowContext& context) {
-  std::vector<RawReading> readings;
-  readings.reserve(static_cast<std::size_t>(range.to - range.from));
-  Statement& query = database.statement(kReadingRows);
-  query.bind(context.scan).bind(range.from).bind(range.to);
-  while (query.next()) {
-    const auto index = static_cast<std::size_t>(query.integer(4));  // of a dark: 0, and no target
-    const PlannedPoint* point = query.is_null(3) || index >= context.points.size() ? nullptr : &context.points[index];
-    add_row(readings, reading_from_row(query, point, context), frame_from_row(query, point, context.stage));
-  }
-  return readings;
 }
 
 // Of an item that was measured again only the last attempt that was accepted counts.
@@ -345,9 +217,9 @@ Result<std::optional<ScanReadings>> read_scan_readings(Database& database, const
   if (!points) return failure(std::move(points).error());
   all.points = joined(std::move(*points));
   const RowContext context{.scan = scan, .stage = stage, .points = all.points, .scale_of_run = time_scales(database)};
-  auto readings =
-      read_parts<std::vector<RawReading>>(path, reading_parts(database, scan),
-                                          [&](Database& own, IdRange range) { return read_rows(own, range, context); });
+  auto readings = read_parts<std::vector<RawReading>>(
+      path, reading_parts(database, scan),
+      [&](Database& own, const ReadingPart& part) { return read_rows(own, part, context); });
   if (!readings) return failure(std::move(readings).error());
   all.readings = joined(std::move(*readings));
   if (has_reopened(database, scan)) drop_superseded(all.readings, all.points.size());

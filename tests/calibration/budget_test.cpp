@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
+
+#include "calibration/student_t.h"
 
 namespace gonio::calibration {
 namespace {
@@ -30,6 +33,25 @@ TEST(CoverageFactor, IsThatOfTheGuidesTable) {
   for (const auto& [nu, k] : rows) EXPECT_NEAR(coverage_factor(nu), k, 0.0051) << nu << " degrees of freedom";
   EXPECT_NEAR(coverage_factor(1e5), 2.0, 1e-4);
   EXPECT_DOUBLE_EQ(coverage_factor(INFINITY), 2.0);
+}
+
+// P(|t| < k) is 2 atan(k) / pi for one degree of freedom, k / sqrt(2 + k^2) for two.
+TEST(StudentFactor, IsTheClosedFormOfOneAndOfTwoDegreesOfFreedom) {
+  constexpr double kLevel = 0.9545;
+  const double of_one = std::tan(0.5 * std::numbers::pi * kLevel);
+  const double of_two = kLevel * std::sqrt(2.0 / (1.0 - kLevel * kLevel));
+
+  EXPECT_NEAR(student_factor(1.0), of_one, 1e-9);
+  EXPECT_NEAR(exact_student_factor(1.0), of_one, 1e-9);
+  EXPECT_NEAR(student_factor(2.0), of_two, 1e-9);
+  EXPECT_NEAR(exact_student_factor(2.0), of_two, 1e-9);
+}
+
+TEST(StudentFactor, IsTheDistributionsOwnBetweenTheNodesOfItsTable) {
+  for (double nu = 1.0; nu < 210.0; nu *= 1.0137) {
+    EXPECT_NEAR(student_factor(nu), exact_student_factor(nu), 1e-9) << nu << " degrees of freedom";
+  }
+  EXPECT_NEAR(student_factor(0.7), exact_student_factor(0.7), 1e-9);
 }
 
 TEST(Budget, AddsRandomAndSharedPartsAsSquares) {
