@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/geometry.h"
+#include "base/large_array.h"
 #include "calibration/power_reading.h"
 
 namespace gonio::calibration {
@@ -93,7 +94,7 @@ struct ScanReadings {
   ReferenceMode reference_mode = ReferenceMode::SameGeometry;
   std::vector<PlannedPoint> points;
   std::optional<double> drift_limit;  ///< of the plan, relative: readings between two visits beyond it are flagged
-  std::vector<RawReading> readings;   ///< accepted attempts and all visits, in time order
+  LargeArray<RawReading> readings;    ///< accepted attempts and all visits, in time order
 };
 
 }  // namespace gonio::calibration

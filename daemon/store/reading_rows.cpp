@@ -200,7 +200,7 @@ class RowReader {
     begin_reading(id, visit_id, is_visit, *occasion, at).frames.push_back(std::move(frame));
   }
 
-  [[nodiscard]] std::vector<RawReading> take() { return std::move(readings_); }
+  [[nodiscard]] LargeArray<RawReading> take() { return std::move(readings_); }
 
  private:
   // Frames of one attempt or visit at one exposure, or in one range, become one reading; its time is the mean of
@@ -215,7 +215,7 @@ class RowReader {
 
   RawReading& begin_reading(std::int64_t id, std::int64_t visit_id, bool is_visit, const Occasion& occasion,
                             Instant at) {
-    RawReading& reading = readings_.emplace_back();
+    RawReading& reading = readings_.emplace_back(RawReading{});
     reading.id = id;
     reading.visit_id = visit_id;
     reading.target = occasion.target;
@@ -232,12 +232,12 @@ class RowReader {
   RowsById<Occasion> visits_;
   RowsById<ReducedMean> reductions_;
   RowsById<PowerReading> powers_;
-  std::vector<RawReading> readings_;
+  LargeArray<RawReading> readings_;
 };
 
 }  // namespace
 
-std::vector<RawReading> read_rows(Database& database, const ReadingPart& part, const RowContext& context) {
+LargeArray<RawReading> read_rows(Database& database, const ReadingPart& part, const RowContext& context) {
   RowReader reader(database, part, context);
   Statement& query = database.statement(kReadingRows);
   query.bind(part.readings.from).bind(part.readings.to);

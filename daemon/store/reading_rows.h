@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "base/large_array.h"
 #include "calibration/raw_reading.h"
 #include "daemon/store/database.h"
 #include "daemon/store/records.h"
@@ -34,7 +35,7 @@ struct RowContext {
 /// The scan's readings in one part of the rows: of accepted attempts and of visits, frames of one attempt or visit at
 /// one exposure, or in one range, together. Each table is read by itself, in the order of its rows, and found again by
 /// number. Errors stick in `database`.
-[[nodiscard]] std::vector<calibration::RawReading> read_rows(Database& database, const ReadingPart& part,
-                                                             const RowContext& context);
+[[nodiscard]] LargeArray<calibration::RawReading> read_rows(Database& database, const ReadingPart& part,
+                                                            const RowContext& context);
 
 }  // namespace gonio::daemon

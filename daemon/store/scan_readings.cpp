@@ -39,13 +39,13 @@ Result<std::vector<Part>> read_parts(const std::string& path, const std::vector<
   return parts;
 }
 
-template <class Part>
-std::vector<Part> joined(std::vector<std::vector<Part>> parts) {
+template <class List>
+List joined(std::vector<List> parts) {
   std::size_t size = 0;
-  for (const auto& part : parts) size += part.size();
-  std::vector<Part> all;
+  for (const List& part : parts) size += part.size();
+  List all;
   all.reserve(size);
-  for (auto& part : parts) {
+  for (List& part : parts) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
     part = {};
   }
@@ -149,7 +149,7 @@ std::map<std::int64_t, std::int64_t> time_scales(Database& database) {
 }
 
 // Of an item that was measured again only the last attempt that was accepted counts.
-void drop_superseded(std::vector<RawReading>& readings, std::size_t points) {
+void drop_superseded(LargeArray<RawReading>& readings, std::size_t points) {
   const auto item_of = [](const RawReading& reading) {
     return 2 * static_cast<std::size_t>(*reading.point_index) + (reading.target == Target::Sample ? 0 : 1);
   };
@@ -169,7 +169,7 @@ bool has_reopened(Database& database, ScanId scan) {
 
 // Of exposures that the plan states some may have been saturated: their frames are kept and not used. A probe for an
 // exposure that nobody asked for is no part of its reading.
-void mark_saturated(Database& database, ScanId scan, std::vector<RawReading>& readings) {
+void mark_saturated(Database& database, ScanId scan, LargeArray<RawReading>& readings) {
   std::set<std::int64_t> owners;
   Statement& query = database.statement(
       "SELECT DISTINCT attempt_id FROM attempt JOIN reading USING (attempt_id) WHERE scan_id = ? AND used = 0 AND "
@@ -217,7 +217,7 @@ Result<std::optional<ScanReadings>> read_scan_readings(Database& database, const
   if (!points) return failure(std::move(points).error());
   all.points = joined(std::move(*points));
   const RowContext context{.scan = scan, .stage = stage, .points = all.points, .scale_of_run = time_scales(database)};
-  auto readings = read_parts<std::vector<RawReading>>(
+  auto readings = read_parts<LargeArray<RawReading>>(
       path, reading_parts(database, scan),
       [&](Database& own, const ReadingPart& part) { return read_rows(own, part, context); });
   if (!readings) return failure(std::move(readings).error());
