@@ -30,8 +30,9 @@ TEST(LineDerivatives, AreExactForAQuarticThroughFiveNodes) {
   differentiate(quartic({5, 5, 5, 5}), found);
 
   for (std::size_t lane = 0; lane < kLineLanes; ++lane) {
-    EXPECT_NEAR(found.third2[lane], 36.0, 1e-9);     // (-6)^2
-    EXPECT_NEAR(found.fourth2[lane], 2304.0, 1e-6);  // 48^2
+    // Of the cubic through the first four: y[x_0 .. x_3] of x^4 is the sum of the nodes, -0.25.
+    EXPECT_NEAR(found.third2[lane], 81.0, 1e-9);     // (6 (-1 - 2 * 0.25))^2
+    EXPECT_NEAR(found.fourth2[lane], 2304.0, 1e-6);  // (24 * 2)^2
     EXPECT_NEAR(found.first[lane], 3.0, found.first_missed[lane]);
     EXPECT_NEAR(found.second[lane], 1.0, found.second_missed[lane]);
   }
