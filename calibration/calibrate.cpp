@@ -32,7 +32,7 @@ namespace gonio::calibration {
 namespace {
 
 // Part of the result: components are numbered by block, so that no bit depends on who worked on which.
-constexpr std::size_t kPointsInBlock = 4096;
+constexpr std::size_t kPointsInBlock = 16384;
 
 std::size_t blocks_of(std::size_t points) {
   return (points + kPointsInBlock - 1) / kPointsInBlock;

@@ -15,7 +15,7 @@
 namespace gonio::calibration {
 
 /// The rules of this room, as one number: grows whenever the same inputs would give other values.
-inline constexpr std::string_view kCalibrationCode = "gonio-calibration-3";
+inline constexpr std::string_view kCalibrationCode = "gonio-calibration-4";
 
 /// When budgets are made by Monte Carlo.
 enum class MonteCarloUse : std::uint8_t {

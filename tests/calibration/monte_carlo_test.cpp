@@ -91,7 +91,7 @@ TEST(CoverageInterval, OfARectangleAloneEndsShortOfItsEdgeAndOfANormalIsTwo) {
 }
 
 TEST(Calibrate, GivesTheSameBitsForAnyNumberOfThreads) {
-  const ScanReadings scan = many(9000);
+  const ScanReadings scan = many(36000);  // three blocks
   const CalibratedScan one = calibrated(scan, ordinary(), {.threads = 1});
 
   for (const int threads : {2, 3}) {
