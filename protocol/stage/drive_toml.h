@@ -9,7 +9,7 @@
 
 namespace gonio::stage {
 
-// Parts that the maps of drives and of couplers share; inside of this room only.
+// Parts that the maps of registers, of drives and of couplers share; inside of this room only.
 
 using Functions = std::pair<ReadFunction, WriteFunction>;
 

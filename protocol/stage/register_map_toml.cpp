@@ -3,23 +3,13 @@
 
 #include <map>
 
+#include "protocol/stage/drive_toml.h"
 #include "protocol/stage/register_map.h"
 
 namespace gonio::stage {
 namespace {
 
 constexpr std::uint16_t kMostReadAtOnce = 125;  // of FC3 and FC23 (Modbus Application Protocol V1.1b3, 6.17)
-constexpr std::int64_t kLastAddress = 0xFFFF;
-
-Register read_register(TomlReader& table, std::string_view name) {
-  TomlReader entry = table.table(name);
-  Register reg;
-  reg.words = static_cast<std::uint8_t>(entry.integer_or("words", 1, 1, 2));
-  reg.address = static_cast<std::uint16_t>(entry.integer("address", 0, kLastAddress + 1 - reg.words));
-  reg.is_signed = entry.flag_or("signed", false);
-  reg.low_word_first = entry.flag_or("low_word_first", false);
-  return reg;
-}
 
 double read_scale(TomlReader& table, std::string_view key) {
   const double scale = table.number(key);
@@ -102,7 +92,7 @@ RegisterMap read_register_map(TomlReader& table) {
   map.humidity_scale_percent = read_scale(table, "humidity_scale_percent");
   for (std::size_t i = 0; i < kFieldCount; ++i) {
     const std::string_view name = field_name(static_cast<Field>(i));
-    map.fields[i] = read_register(table, name);
+    map.fields[i] = read_plain_register(table, name);
     owners.claim(table, name, map.fields[i]);
   }
   TomlReader axes = table.table("axes");
@@ -111,7 +101,7 @@ RegisterMap read_register_map(TomlReader& table) {
     map.axis_scale[index_of(axis)] = read_scale(one, "scale");
     for (std::size_t i = 0; i < kAxisFieldCount; ++i) {
       const std::string_view name = field_name(static_cast<AxisField>(i));
-      map.axes[index_of(axis)][i] = read_register(one, name);
+      map.axes[index_of(axis)][i] = read_plain_register(one, name);
       owners.claim(one, name, map.axes[index_of(axis)][i], axis_name(axis));
     }
   }
