@@ -11,20 +11,12 @@
 #include "sim/scene/drive_stage.h"
 #include "sim/wires/modbus_reply.h"
 #include "tests/sim/bench.h"
+#include "tests/sim/hex_bytes.h"
 
 namespace gonio::sim::test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-
-Bytes bytes(const std::string& hex) {
-  Bytes out;
-  constexpr std::size_t kDigitsAndSpace = 3;
-  for (std::size_t at = 0; at < hex.size(); at += kDigitsAndSpace) {
-    out.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(at, 2), nullptr, 16)));
-  }
-  return out;
-}
 
 Scene scene_with_drives() {
   Scene scene = quiet_scene();

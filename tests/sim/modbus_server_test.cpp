@@ -13,24 +13,12 @@
 #include <vector>
 
 #include "tests/sim/bench.h"
+#include "tests/sim/hex_bytes.h"
 
 namespace gonio::sim::test {
 namespace {
 
 constexpr int kPatienceMs = 20000;  // a bound against hanging
-
-std::vector<std::uint8_t> bytes(const std::string& hex) {
-  std::vector<std::uint8_t> out;
-  std::string digits;
-  for (const char c : hex) {
-    if (c == ' ') continue;
-    digits.push_back(c);
-    if (digits.size() < 2) continue;
-    out.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
-    digits.clear();
-  }
-  return out;
-}
 
 /// A plain socket that speaks bytes.
 class Master {

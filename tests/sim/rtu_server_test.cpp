@@ -14,6 +14,7 @@
 
 #include "sim/wires/rtu_frame.h"
 #include "tests/sim/bench.h"
+#include "tests/sim/hex_bytes.h"
 #include "tests/support/process.h"
 
 namespace gonio::sim::test {
@@ -23,19 +24,6 @@ using Bytes = std::vector<std::uint8_t>;
 using namespace std::chrono_literals;
 
 constexpr int kPatienceMs = 20000;  // a bound against hanging
-
-Bytes bytes(const std::string& hex) {
-  Bytes out;
-  std::string digits;
-  for (const char c : hex) {
-    if (c == ' ') continue;
-    digits.push_back(c);
-    if (digits.size() < 2) continue;
-    out.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
-    digits.clear();
-  }
-  return out;
-}
 
 /// The open end of a line, opened as any program would.
 class Master {
