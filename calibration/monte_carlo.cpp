@@ -5,17 +5,19 @@
 #include <numbers>
 #include <vector>
 
+#include "base/split_mix.h"
+
 namespace gonio::calibration {
 namespace {
 
-/// A counter-based stream of normal and even numbers (SplitMix64: Steele, Lea and Flood 2014; Box and Muller 1958).
+/// A stream of normal and even numbers (Box and Muller 1958).
 class Draws {
  public:
-  explicit Draws(std::uint64_t stream) : state_(stream) {}
+  explicit Draws(std::uint64_t stream) : stream_(stream) {}
 
   double even() {                                          // in (0, 1)
     constexpr double kPerStep = 1.0 / 9007199254740992.0;  // 2^-53
-    return (static_cast<double>(next() >> 11U) + 0.5) * kPerStep;
+    return (static_cast<double>(stream_.next() >> 11U) + 0.5) * kPerStep;
   }
   double normal() {
     if (has_spare_) {
@@ -30,15 +32,7 @@ class Draws {
   }
 
  private:
-  std::uint64_t next() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31U);
-  }
-
-  std::uint64_t state_;
+  SplitMix stream_;
   double spare_ = 0.0;
   bool has_spare_ = false;
 };

@@ -1,26 +1,23 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+
+#include "base/split_mix.h"
 
 namespace gonio::daemon {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every platform, unlike the standard's distributions.
+/// Random bits, and whole numbers below a bound.
 class Chance {
  public:
-  explicit Chance(std::uint64_t seed) : state_(seed) {}
+  explicit Chance(std::uint64_t seed) : stream_(seed) {}
 
-  std::uint64_t next() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31U);
-  }
+  std::uint64_t next() { return stream_.next(); }
   /// In [0, bound). The bias of the remainder is below 2^-40 for the 10^7 points that a plan may have.
   std::size_t below(std::size_t bound) { return static_cast<std::size_t>(next() % bound); }
 
  private:
-  std::uint64_t state_;
+  SplitMix stream_;
 };
 
 }  // namespace gonio::daemon
