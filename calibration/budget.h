@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -14,12 +15,16 @@ namespace gonio::calibration {
 /// 100:2008, 5.2: the correlation that a sum over points must keep).
 enum class ComponentKind : std::uint8_t { Random, Shared };
 
-/// What is known of how an error is distributed. Rectangular: a stated bound, u = half width / sqrt(3).
-enum class Distribution : std::uint8_t { Normal, Rectangular };
+/// What is known of how an error is distributed. Rectangular: a stated bound, u = half width / sqrt(3). Arcsine: it goes
+/// with the cosine of an angle of which nothing is known, u = amplitude / sqrt(2) (JCGM 101:2008, 6.4.6).
+enum class Distribution : std::uint8_t { Normal, Rectangular, Arcsine };
 
-/// How a budget was made. FormulaWithRectangle: one rectangular component is so large that k is not Student's
+/// How a budget was made. FormulaWithBounds: errors that have bounds are so large that k is not Student's
 /// (coverage_interval.h).
-enum class BudgetMethod : std::uint8_t { Formula, FormulaWithRectangle, MonteCarlo };
+enum class BudgetMethod : std::uint8_t { Formula, FormulaWithBounds, MonteCarlo };
+
+/// Most angles of which nothing is known in one scan.
+inline constexpr std::size_t kUnknownAngles = 4;
 
 /// One source of uncertainty of a scan.
 struct Component {
@@ -29,6 +34,9 @@ struct Component {
   std::string unit;  ///< "1" when relative
   double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of u
   Distribution distribution = Distribution::Normal;
+  /// Of an arcsine component, 0 to kUnknownAngles - 1: the angle that it goes with. Two components of one angle are its
+  /// cosine and its sine: together they are one arcsine error again, of the root of both squares.
+  std::uint8_t unknown_angle = 0;
   /// What the error belongs to: components of two scans with the same name and owner are one error. Empty: this scan
   /// alone has it.
   std::string owner;
@@ -82,7 +90,15 @@ struct SumTerm {
   Brdf value;
   const Budget* budget = nullptr;  ///< of a point of the same scan
 };
-/// In sr^-1 times the unit of the weights. The terms are added in their order: the same bits every time.
-[[nodiscard]] Measured<Brdf> weighted_sum(std::span<const SumTerm> terms);
+/// In sr^-1 times the unit of the weights.
+struct WeightedSum {
+  Brdf value;
+  Brdf u;  ///< k = 1
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();
+  double k = 0.0;  ///< for 95.45 %, by the same rules as a point's
+  Brdf expanded;   ///< U = k u
+};
+/// `components`: those of the scan. The terms are added in their order: the same bits every time.
+[[nodiscard]] WeightedSum weighted_sum(std::span<const Component> components, std::span<const SumTerm> terms);
 
 }  // namespace gonio::calibration

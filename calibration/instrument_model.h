@@ -93,6 +93,9 @@ struct ConeModel {
   Measured<Angle> detector_half;
 };
 
+/// The standard deviation of the cosine of an angle of which nothing is known.
+inline constexpr double kOfAnyPlane = 0.70710678118654752;
+
 /// What is left of polarisation when one state of light is measured (polarisation_term.h).
 struct PolarisationModel {
   double source_degree = 0.0;           ///< linear, of the lamp's light
@@ -101,7 +104,8 @@ struct PolarisationModel {
   /// angle from its plane to the source's or the detector's, which nobody knows; the standard's likewise.
   double u_sample = 0.0;
   double u_reference = 0.0;
-  /// A sample of clear facets: its diattenuation is Fresnel's at half the phase angle, times u_sample.
+  /// A sample of clear facets: its diattenuation is Fresnel's at half the phase angle, times u_sample: kOfAnyPlane
+  /// where nothing is known of the planes, less where something is.
   std::optional<double> sample_index;
 };
 

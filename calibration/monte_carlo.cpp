@@ -1,6 +1,7 @@
 #include "calibration/monte_carlo.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -41,11 +42,12 @@ class Draws {
 struct Law {
   double u_divisor = 0.0;
   double x_per_divisor = 0.0;  ///< of X for one standard deviation of D
-  double u_rest = 0.0;         ///< of X otherwise, without angles and rectangles
+  double u_rest = 0.0;         ///< of X otherwise, without angles and what has bounds
   std::array<double, kDirectionAxes> slope{};
   std::array<double, kDirectionAxes> bend{};  ///< half the second derivative
   std::array<double, kDirectionAxes> u_angle{};
   std::vector<double> rectangles;  ///< half widths
+  std::array<double, kUnknownAngles> arcsine2{};  ///< u^2, of each angle
 };
 
 Law law_of(double value, const Budget& budget, const TermList& terms, const Nonlinearity& bent) {
@@ -69,6 +71,10 @@ Law law_of(double value, const Budget& budget, const TermList& terms, const Nonl
       const double x = list == &budget.random && d != 0.0 ? 0.0 : term.per_sd.si() + value * d;
       if (components[term.component].distribution == Distribution::Rectangular && d == 0.0) {
         law.rectangles.push_back(std::numbers::sqrt3 * x);
+        continue;
+      }
+      if (components[term.component].distribution == Distribution::Arcsine && d == 0.0) {
+        law.arcsine2[components[term.component].unknown_angle] += x * x;
         continue;
       }
       x2 += x * x;
@@ -97,6 +103,9 @@ double draw(double value, const Law& law, Draws& draws) {
     x += angle * (law.slope[a] + law.bend[a] * angle);
   }
   for (const double half : law.rectangles) x += half * (2.0 * draws.even() - 1.0);
+  for (const double u2 : law.arcsine2) {
+    if (u2 > 0.0) x += std::sqrt(2.0 * u2) * std::cos(2.0 * std::numbers::pi * draws.even());
+  }
   return x / (1.0 + law.u_divisor * d);
 }
 

@@ -73,21 +73,28 @@ class PolarisationTerms {
   }
 
   void add_plane(std::int64_t part, double size, const PlaneTurn& turn, std::string_view of) {
-    add_one({ComponentSource::Polarisation, part, 0}, model_.u_sample, size * turn.cosine, true,
+    ComponentTraits traits{.owner = owner_};
+    if (is_of_any_plane()) {
+      traits.distribution = Distribution::Arcsine;
+      traits.unknown_angle = static_cast<std::uint8_t>(part);
+    }
+    add_one({ComponentSource::Polarisation, part, 0}, model_.u_sample, size * turn.cosine, traits,
             [&] { return fmt::format("polarisation of {}, along", of); });
-    add_one({ComponentSource::Polarisation, part, 1}, model_.u_sample, size * turn.sine, true,
+    add_one({ComponentSource::Polarisation, part, 1}, model_.u_sample, size * turn.sine, traits,
             [&] { return fmt::format("polarisation of {}, at 45 deg", of); });
   }
 
+  // As it is stated in two digits, too. Of a plane that is known in part no distribution is known.
+  [[nodiscard]] bool is_of_any_plane() const { return std::abs(model_.u_sample - kOfAnyPlane) < 0.01; }
+
   void add_unknown(std::int64_t part, double u, double size, std::string_view of) {
-    add_one({ComponentSource::Polarisation, part}, u, size, false,
+    add_one({ComponentSource::Polarisation, part}, u, size, {.owner = owner_, .is_pattern_known = false},
             [&] { return fmt::format("polarisation of {}", of); });
   }
 
   template <class Name>
-  void add_one(const ComponentTable::Key& key, double u, double size, bool is_pattern_known, const Name& name) {
-    terms_.shared(key, u, "of its diattenuation", point_.value * size * u, name,
-                  {.owner = owner_, .is_pattern_known = is_pattern_known});
+  void add_one(const ComponentTable::Key& key, double u, double size, const ComponentTraits& traits, const Name& name) {
+    terms_.shared(key, u, "of its diattenuation", point_.value * size * u, name, traits);
   }
 
   const PairedPoint& point_;

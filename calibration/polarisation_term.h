@@ -30,8 +30,9 @@ struct PlaneTurn {
 /// light has P = 1, with opposite signs: the mean of both is free of the source's part and of the product. Shared. Of
 /// clear facets the plane of each point is known (facet_turn) and psi = psi_0 - eta turns with it,
 ///   cos 2 psi = cos 2 eta cos 2 psi_0 + sin 2 eta sin 2 psi_0,
-/// psi_0 the arm's own plane: two errors with known signs, so that points of other planes do not err as one. Where the
-/// surface is not stated to be of facets, only the size is known.
+/// psi_0 the arm's own plane: two errors with known signs, so that points of other planes do not err as one; of any
+/// plane at all (kOfAnyPlane) both together are one arcsine error, of a point and of a sum. Where the surface is not
+/// stated to be of facets, only the size is known.
 void add_polarisation_terms(const PairedPoint& point, const InstrumentModel& instrument, TermList& terms);
 
 }  // namespace gonio::calibration

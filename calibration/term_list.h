@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@ namespace gonio::calibration {
 struct ComponentTraits {
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
   Distribution distribution = Distribution::Normal;
+  std::uint8_t unknown_angle = 0;  ///< Component::unknown_angle
   std::string_view owner;        ///< Component::owner
   bool is_pattern_known = true;  ///< Component::is_pattern_known
   bool is_of_the_wander = false;
@@ -86,6 +88,7 @@ class TermList {
                        .unit = std::string(unit),
                        .degrees_of_freedom = traits.degrees_of_freedom,
                        .distribution = traits.distribution,
+                       .unknown_angle = traits.unknown_angle,
                        .owner = std::string(traits.owner),
                        .is_pattern_known = traits.is_pattern_known,
                        .is_of_the_wander = traits.is_of_the_wander};

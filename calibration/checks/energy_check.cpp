@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include "calibration/checks/check_parts.h"
 #include "calibration/cosine_weights.h"
@@ -119,16 +120,16 @@ struct Share {
 };
 
 // What the trapezoids miss is judged by what they miss with half the points: all of that counts as its u.
-std::optional<Share> share_of(const std::vector<Ring>& rings) {
+std::optional<Share> share_of(std::span<const Component> components, const std::vector<Ring>& rings) {
   if (rings.size() < kFewestRings) return std::nullopt;
   auto fine = terms_of(rings);
   if (!fine) return std::nullopt;
   merge_same(*fine);
-  const auto value = weighted_sum(*fine);
+  const auto value = weighted_sum(components, *fine);
   double missed = 0.0;
   if (auto coarse = terms_of(coarser(rings))) {
     merge_same(*coarse);
-    missed = weighted_sum(*coarse).value.si() - value.value.si();
+    missed = weighted_sum(components, *coarse).value.si() - value.value.si();
   } else {
     missed = value.value.si();  // too few points to tell
   }
@@ -156,7 +157,7 @@ ScanCheck check_energy(const CalibratedScan& calibrated, const CheckInputs& inpu
   double worst_theta_deg = 0.0;
   double worst = -INFINITY;
   for (const auto& [light, points] : lights) {
-    const auto share = share_of(rings_of(points, inputs.scan.isotropic));
+    const auto share = share_of(calibrated.components, rings_of(points, inputs.scan.isotropic));
     if (!share || !(share->u > 0.0)) continue;
     ++check.compared;
     const double z = (share->value - 1.0) / share->u;

@@ -106,13 +106,25 @@ std::optional<double> finite(double value) {
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
+const char* distribution_word(calibration::Distribution distribution) {
+  switch (distribution) {
+    case calibration::Distribution::Rectangular:
+      return "rectangular";
+    case calibration::Distribution::Arcsine:
+      return "arcsine";
+    case calibration::Distribution::Normal:
+      break;
+  }
+  return "normal";
+}
+
 api::BudgetTermReport term_report(const calibration::BudgetTerm& term, const calibration::Component& component,
                                   double variance) {
   const double per_sd = term.per_sd.si();
   api::BudgetTermReport report{
       .component = component.name,
       .kind = component.kind == calibration::ComponentKind::Shared ? "shared" : "random",
-      .distribution = component.distribution == calibration::Distribution::Normal ? "normal" : "rectangular",
+      .distribution = distribution_word(component.distribution),
       .u = std::nullopt,
       .unit = component.unit,
       .sensitivity = std::nullopt,
@@ -130,8 +142,8 @@ std::string method_words(const calibration::Budget& budget) {
   switch (budget.method) {
     case calibration::BudgetMethod::MonteCarlo:
       return "Monte Carlo (JCGM 101:2008); the shares are those of the linear terms";
-    case calibration::BudgetMethod::FormulaWithRectangle:
-      return "law of propagation (JCGM 100:2008, eq 13), k of a normal and a rectangular error for 95.45 %";
+    case calibration::BudgetMethod::FormulaWithBounds:
+      return "law of propagation (JCGM 100:2008, eq 13), k of normal errors and of some with bounds for 95.45 %";
     case calibration::BudgetMethod::Formula:
       break;
   }

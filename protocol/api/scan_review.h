@@ -33,7 +33,7 @@ struct ScanChecksReport {
 struct BudgetTermReport {
   std::string component;
   std::string kind;          ///< "random": drawn anew at each point; "shared": one error of many points
-  std::string distribution;  ///< "normal", "rectangular"
+  std::string distribution;  ///< "normal", "rectangular", "arcsine"
   std::optional<double> u;   ///< standard uncertainty of the component; none: it differs from point to point
   std::string unit;
   std::optional<double> sensitivity;         ///< sr^-1 per unit of the component, signed for a shared one

@@ -99,10 +99,34 @@ TEST(WeightedSum, KeepsSharedErrorsTogetherAndRandomOnesApart) {
   const Budget& b = made_b.budget;
   const std::vector<SumTerm> terms = {{1.0, f(10.0), &a}, {1.0, f(20.0), &b}};
 
-  const Measured<Brdf> sum = weighted_sum(terms);
+  const auto sum = weighted_sum(components, terms);
 
   EXPECT_DOUBLE_EQ(sum.value.si(), 30.0);
   EXPECT_DOUBLE_EQ(sum.u.si(), std::sqrt(9.0 + 16.0 + 16.0));  // component 2 cancels
+}
+
+// Two planes that nobody knows: the signs of both parts of each are kept, and their sum has bounds.
+TEST(WeightedSum, TakesKFromBoundsAndFromFewDegreesOfFreedomAsAPointDoes) {
+  std::vector<Component> components(3);
+  components[0].distribution = components[1].distribution = Distribution::Arcsine;
+  components[2].degrees_of_freedom = 8.0;
+  const Made lone(components, {}, {{0, f(3.0)}, {1, f(4.0)}});
+  const Made turned(components, {}, {{0, f(-3.0)}, {1, f(4.0)}});
+  const Made uncertain(components, {}, {{2, f(1.0)}});
+
+  const auto one = weighted_sum(components, std::vector<SumTerm>{{1.0, f(10.0), &lone.budget}});
+  const auto both =
+      weighted_sum(components, std::vector<SumTerm>{{1.0, f(10.0), &lone.budget}, {1.0, f(10.0), &turned.budget}});
+  const auto few =
+      weighted_sum(components, std::vector<SumTerm>{{1.0, f(10.0), &uncertain.budget}, {2.0, f(1.0), &uncertain.budget}});
+
+  EXPECT_EQ(one.k, lone.budget.k);
+  EXPECT_EQ(lone.budget.method, BudgetMethod::FormulaWithBounds);
+  EXPECT_NEAR(one.k, std::numbers::sqrt2 * std::sin(0.5 * std::numbers::pi * 0.9545), 0.007);
+  EXPECT_DOUBLE_EQ(both.u.si(), 8.0);  // one part of the plane cancels, the other doubles
+  EXPECT_NEAR(both.k, one.k, 1e-9);
+  EXPECT_NEAR(few.degrees_of_freedom, 8.0, 1e-9);
+  EXPECT_NEAR(few.k, 2.37, 0.01);
 }
 
 // Four errors of one estimate know no more of their size than the one would.

@@ -149,14 +149,15 @@ RepetitionOutcome outcome_of(const calibration::CalibratedScan& scan, const sim:
       terms.push_back({.weight = weight, .value = point->value, .budget = &point->budget});
       true_sum += weight * truth.sample(point->geometry).si();
     }
-    const auto sum = calibration::weighted_sum(terms);
+    const auto sum = calibration::weighted_sum(scan.components, terms);
     const double u = correlation ? sum.u.si() : uncorrelated_u(terms);
+    const double expanded = correlation ? sum.expanded.si() : 2.0 * u;
     outcome.rho.push_back({.point = static_cast<std::int32_t>(theta_i),
                            .error = sum.value.si() - true_sum,
                            .u = u,
-                           .expanded = 2.0 * u,
-                           .below = 2.0 * u,
-                           .above = 2.0 * u,
+                           .expanded = expanded,
+                           .below = expanded,
+                           .above = expanded,
                            .value = sum.value.si(),
                            .strata = 0});
   }

@@ -38,7 +38,7 @@ struct ValueOutcome {
 /// What one repetition found.
 struct RepetitionOutcome {
   std::vector<ValueOutcome> points;
-  std::vector<ValueOutcome> rho;  ///< one each theta_i: the sum over the measured rings, correlations kept, U = 2 u
+  std::vector<ValueOutcome> rho;  ///< one each theta_i: the sum over the measured rings, correlations kept
   std::vector<ErrorCode> refused;
   std::size_t planned = 0;
 };

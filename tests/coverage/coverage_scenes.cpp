@@ -1,6 +1,5 @@
 // The scenes of the coverage test. What a scene draws and what it tells come from the same constants.
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -317,10 +316,10 @@ void add_stray_scenes(std::vector<CoverageScene>& list) {
            },
        .tell =
            [](InstrumentModel& m) {
-             // The deviation of cos(2 angle) for a plane of any angle; the standard depolarises.
+             // The standard depolarises.
              m.polarisation = calibration::PolarisationModel{.source_degree = kDegree,
                                                              .detector_diattenuation = kDegree,
-                                                             .u_sample = std::numbers::sqrt2 / 2.0,
+                                                             .u_sample = calibration::kOfAnyPlane,
                                                              .u_reference = 0.0,
                                                              .sample_index = 1.34};
            }});
