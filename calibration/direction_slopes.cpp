@@ -6,6 +6,7 @@
 
 #include "calibration/direction_lines.h"
 #include "calibration/line_derivatives.h"
+#include "calibration/nearby_secants.h"
 #include "calibration/parallel_blocks.h"
 #include "calibration/root_sum.h"
 
@@ -169,10 +170,11 @@ bool is_near_pole(const DirectionKey& key) {
   return std::min(std::abs(key.theta_i), std::abs(key.theta_r)) < kNear;
 }
 
-void guess_slopes(const SlopePoint& point, const DirectionKey& key, bool isotropic, DirectionSlopes& s) {
+// `nearby`: the steepest secant of a point without a neighbour along either theta (nearby_secants.h).
+void guess_slopes(const SlopePoint& point, const DirectionKey& key, bool isotropic, double nearby, DirectionSlopes& s) {
   const auto size = [&](std::size_t a) { return root_sum(s.slope[a], s.unresolved[a]); };
   if (!s.has_neighbours[kI] && !s.has_neighbours[kR]) {
-    s.unresolved[kI] = s.unresolved[kR] = std::abs(point.value.si());
+    s.unresolved[kI] = s.unresolved[kR] = std::max(std::abs(point.value.si()), nearby);
   } else if (!s.has_neighbours[kI]) {
     s.unresolved[kI] = size(kR);
   } else if (!s.has_neighbours[kR]) {
@@ -253,6 +255,7 @@ SlopeField::SlopeField(std::span<const SlopePoint> points, bool isotropic, int t
   for_blocks(kDirectionAxes, threads, [&](std::size_t axis) {
     lines_[axis] = std::make_unique<DirectionLines>(points, keys_, isotropic, static_cast<DirectionAxis>(axis));
   });
+  nearby_ = std::make_unique<NearbySecants>(points_, ordinates_, isotropic_);
 }
 
 SlopeField::~SlopeField() = default;
@@ -264,7 +267,8 @@ DirectionSlopes SlopeField::at(std::size_t n) const {
   }
   differentiate(lines.nodes, lines.found);
   DirectionSlopes slopes = slopes_of(lines);
-  guess_slopes(points_[n], keys_[n], isotropic_, slopes);
+  const bool is_lone = !slopes.has_neighbours[kI] && !slopes.has_neighbours[kR];
+  guess_slopes(points_[n], keys_[n], isotropic_, is_lone ? nearby_->steepest(n) : 0.0, slopes);
   guess_lone_lines(points_[n], isotropic_, lines, slopes);
   guess_curvatures(points_[n], keys_[n], slopes);
   return slopes;

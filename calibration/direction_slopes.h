@@ -51,6 +51,7 @@ struct SlopeOrdinate {
 
 struct DirectionKey;
 class DirectionLines;
+class NearbySecants;
 
 /// Slopes from the measured points alone; no model of the surface. For each point and axis:
 /// - its line holds the points of the same wavelength and polarisation whose other angles are planned equal (to 0.001
@@ -68,8 +69,9 @@ class DirectionLines;
 /// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope;
 /// - without a neighbour: |df/dtheta_i| is taken as large as |df/dtheta_r| and the other way round (equal for what
 ///   depends on the phase angle or on the tilt of a facet), phi as large as the larger of them times the smaller of
-///   sin(theta_i) and sin(theta_r) (at either pole phi means nothing), and without any neighbour at all, |f| per
-///   radian; second derivatives of the thetas likewise;
+///   sin(theta_i) and sin(theta_r) (at either pole phi means nothing), and without a neighbour along either theta
+///   both as large as the steepest secant to the nearest points of the same incidence (nearby_secants.h), |f| per
+///   radian at least; second derivatives of the thetas likewise, but for the secants;
 /// - across the pole f changes towards the other direction alone, of an isotropic sample: the steepest slope times
 ///   |sin(dphi)|; of any other, the steepest slope.
 /// Newton's divided differences (Abramowitz and Stegun 1964, 25.2.26): each neighbour adds one term.
@@ -91,6 +93,7 @@ class SlopeField {
   LargeArray<DirectionKey> keys_;
   LargeArray<SlopeOrdinate> ordinates_;
   std::array<std::unique_ptr<const DirectionLines>, kDirectionAxes> lines_;
+  std::unique_ptr<const NearbySecants> nearby_;
 };
 
 }  // namespace gonio::calibration

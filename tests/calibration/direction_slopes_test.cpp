@@ -99,6 +99,38 @@ TEST(DirectionSlopes, SayHowMuchTheirPointsDoNotResolve) {
   EXPECT_GE(within_twice, 0.93 * 3.0 * static_cast<double>(points.size()));
 }
 
+// A narrow gloss, its readings scattered as a warped grid lays them: none on a line with another.
+TEST(DirectionSlopes, OfALonePointOnTheFlankOfALobeAreOfTheSizeThatItsNeighboursSay) {
+  constexpr double kWidth = 0.028;  // 1.6 deg
+  const auto f = [](double, double r, double p) {
+    const double off = (r - std::numbers::pi / 3.0) * (r - std::numbers::pi / 3.0) + 0.75 * std::pow(p - std::numbers::pi, 2);
+    return 0.1 + 60.0 * std::exp(-off / (2.0 * kWidth * kWidth));
+  };
+  const std::vector<Geometry> places = {directions(60, 64.3, 181.6), directions(60, 63.2, 180.9),
+                                        directions(60, 62.1, 182.5), directions(60, 60.4, 180.2),
+                                        directions(60, 65.1, 183.0), directions(30, 64.0, 181.7)};
+  const auto points = measured(places, f, 1e-4);
+
+  const DirectionSlopes slopes = slopes_of(points)[0];
+
+  const double r = points[0].reported.theta_r.si();
+  const double p = points[0].reported.phi_r.si();
+  const double real = std::abs(f(0, r + 1e-5, p) - f(0, r - 1e-5, p)) / 2e-5;
+  EXPECT_FALSE(slopes.has_neighbours[kR]);
+  EXPECT_EQ(slopes.slope[kR], 0.0);
+  EXPECT_GT(slopes.unresolved[kR], 0.5 * real);
+  EXPECT_LT(slopes.unresolved[kR], 2.0 * real);
+  EXPECT_GT(real, 5.0 * points[0].value.si()) << "what |f| per radian would miss";
+}
+
+// Repeated readings of a matt surface: their noise over a small arc is no slope.
+TEST(DirectionSlopes, OfALonePointDoNotComeFromNoise) {
+  const auto points = measured({directions(60, 40.0, 90.0), directions(60, 40.1, 90.2), directions(60, 39.9, 90.1)},
+                               [](double, double, double p) { return 0.3 + 1e-6 * p; }, 1e-3);
+
+  EXPECT_DOUBLE_EQ(slopes_of(points)[0].unresolved[kR], points[0].value.si());
+}
+
 TEST(DirectionSlopes, GoThroughTheNormalIntoTheOppositeHalfPlane) {
   const auto f = [](double, double r, double p) { return std::exp(0.4 * r * std::cos(p)); };  // along x
   const auto points = measured(grid({30}, {0, 20, 40}, {0, 180}), f);
