@@ -98,7 +98,7 @@ class CoverageParts {
   double sum4_ = 0.0;     // of u_i^4 / nu_i
   double wander2_ = 0.0;  // of all that comes from one estimate
   double wander_dof_ = std::numeric_limits<double>::infinity();
-  double rectangle2_ = 0.0;                         // the largest; others are near enough to normal together
+  double rectangle2_ = 0.0;                        // the largest; others are near enough to normal together
   std::array<double, kUnknownAngles> arcsine2_{};  // of each angle
 };
 

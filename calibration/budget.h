@@ -15,8 +15,8 @@ namespace gonio::calibration {
 /// 100:2008, 5.2: the correlation that a sum over points must keep).
 enum class ComponentKind : std::uint8_t { Random, Shared };
 
-/// What is known of how an error is distributed. Rectangular: a stated bound, u = half width / sqrt(3). Arcsine: it goes
-/// with the cosine of an angle of which nothing is known, u = amplitude / sqrt(2) (JCGM 101:2008, 6.4.6).
+/// What is known of how an error is distributed. Rectangular: a stated bound, u = half width / sqrt(3). Arcsine: it
+/// goes with the cosine of an angle of which nothing is known, u = amplitude / sqrt(2) (JCGM 101:2008, 6.4.6).
 enum class Distribution : std::uint8_t { Normal, Rectangular, Arcsine };
 
 /// How a budget was made. FormulaWithBounds: errors that have bounds are so large that k is not Student's

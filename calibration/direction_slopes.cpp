@@ -15,14 +15,21 @@ namespace {
 
 constexpr double kSamePlace = 2e-4;  // 0.01 deg: closer neighbours give noise over nothing
 constexpr std::size_t kNodesAtMost = LineNodes::kAtMost;
-static_assert(kDirectionAxes <= kLineLanes);
+constexpr std::size_t kI = 0;
+constexpr std::size_t kR = 1;
+constexpr std::size_t kPhi = 2;
+constexpr std::size_t kCosine = kDirectionAxes;  // a lane of its own: the line along phi once more
+static_assert(kCosine < kLineLanes);
 
 SlopeOrdinate ordinate_of(const SlopePoint& p) {
   constexpr double kClearOfZero = 5.0;  // standard uncertainties: then ln f is normal too
   const double f = p.value.si();
   const double u = p.u_random.si();
-  if (!(f > kClearOfZero * u && f > 0.0)) return {};
-  return {.log_f = std::log(f), .u_log = u / f};
+  SlopeOrdinate ordinate{.cos_dphi = std::cos((p.reported.phi_r - p.reported.phi_i).si())};
+  if (!(f > kClearOfZero * u && f > 0.0)) return ordinate;
+  ordinate.log_f = std::log(f);
+  ordinate.u_log = u / f;
+  return ordinate;
 }
 
 /// A point and its neighbours on a line, nearest first.
@@ -77,6 +84,7 @@ struct PointLines {
   LineNodes nodes;
   std::array<double, kDirectionAxes> unit{};  ///< of a derivative: f of a line through ln f
   std::array<double, kDirectionAxes> sign{};
+  std::array<double, kNodesAtMost> cos_dphi{};  ///< of the nodes along phi
   LineDerivatives found;
 
   [[nodiscard]] std::size_t size(std::size_t axis) const { return static_cast<std::size_t>(nodes.size[axis]); }
@@ -92,6 +100,7 @@ void read_line(std::span<const SlopePoint> points, std::span<const SlopeOrdinate
     lines.nodes.x[n][axis] = near.stop[n]->coordinate - own.coordinate;
     lines.nodes.y[n][axis] = o.log_f;
     lines.nodes.u2[n][axis] = o.u_log * o.u_log;
+    if (axis == kPhi) lines.cos_dphi[n] = o.cos_dphi;
   }
   for (std::size_t n = 0; n < near.size && !has_logarithm; ++n) {
     const SlopePoint& p = points[near.stop[n]->point];
@@ -102,6 +111,42 @@ void read_line(std::span<const SlopePoint> points, std::span<const SlopeOrdinate
   lines.nodes.is_logarithm[axis] = has_logarithm ? 1.0 : 0.0;
   lines.unit[axis] = has_logarithm ? points[own.point].value.si() : 1.0;
   lines.sign[axis] = static_cast<double>(own.sign);
+}
+
+constexpr std::size_t kOfLoneLine = 3;
+
+// An isotropic sample's line along phi by x = -cos(dphi), in which both of its mirror planes are kept: an image is its
+// point. Nearest first, as x counts. Fewer than three points say less than the images do.
+void add_cosines(PointLines& lines) {
+  constexpr double kSameCosine = 1e-6;
+  LineNodes& nodes = lines.nodes;
+  std::size_t size = 0;
+  for (std::size_t n = 0; n < lines.size(kPhi); ++n) {
+    const double x = lines.cos_dphi[0] - lines.cos_dphi[n];
+    bool is_image = false;
+    for (std::size_t m = 0; m < size; ++m) is_image |= std::abs(nodes.x[m][kCosine] - x) < kSameCosine;
+    if (is_image) continue;
+    std::size_t place = size++;
+    for (; place > 0 && std::abs(nodes.x[place - 1][kCosine]) > std::abs(x); --place) {
+      nodes.x[place][kCosine] = nodes.x[place - 1][kCosine];
+      nodes.y[place][kCosine] = nodes.y[place - 1][kCosine];
+      nodes.u2[place][kCosine] = nodes.u2[place - 1][kCosine];
+    }
+    nodes.x[place][kCosine] = x;
+    nodes.y[place][kCosine] = nodes.y[n][kPhi];
+    nodes.u2[place][kCosine] = nodes.u2[n][kPhi];
+  }
+  nodes.size[kCosine] = size >= kOfLoneLine ? static_cast<double>(size) : 0.0;
+  nodes.is_logarithm[kCosine] = nodes.is_logarithm[kPhi];
+}
+
+// d/dphi = sin(dphi) d/dx.
+void take_cosines(const PointLines& lines, DirectionSlopes& slopes) {
+  if (lines.size(kCosine) < kOfLoneLine) return;
+  const double cosine = lines.cos_dphi[0];
+  const double per_x = lines.unit[kPhi] * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  slopes.slope[kPhi] = lines.sign[kPhi] * per_x * lines.found.first[kCosine];
+  slopes.unresolved[kPhi] = per_x * lines.found.first_missed[kCosine];
 }
 
 DirectionSlopes slopes_of(const PointLines& lines) {
@@ -129,8 +174,6 @@ struct LineBend {
 };
 using LineBends = std::array<LineBend, kDirectionAxes>;
 
-constexpr std::size_t kOfLoneLine = 3;
-
 LineBend bend_of(const PointLines& lines, std::size_t axis) {
   const double unit2 = lines.unit[axis] * lines.unit[axis];
   const double a = lines.nodes.x[1][axis];
@@ -150,10 +193,6 @@ bool has_no_phi_slope(const DirectionKey& key, bool isotropic) {
   if (!isotropic) return false;
   return key.theta_i == 0 || key.dphi == 0 || key.dphi == kHalfTurn;
 }
-
-constexpr std::size_t kI = 0;
-constexpr std::size_t kR = 1;
-constexpr std::size_t kPhi = 2;
 
 double smaller_sine(const Geometry& g) {
   return std::min(std::abs(std::sin(g.theta_i.si())), std::abs(std::sin(g.theta_r.si())));
@@ -265,8 +304,10 @@ DirectionSlopes SlopeField::at(std::size_t n) const {
   for (std::size_t axis = 0; axis < kDirectionAxes; ++axis) {
     read_line(points_, ordinates_, lines_[axis]->stop_of(n), axis, lines);
   }
+  if (isotropic_) add_cosines(lines);
   differentiate(lines.nodes, lines.found);
   DirectionSlopes slopes = slopes_of(lines);
+  if (isotropic_) take_cosines(lines, slopes);
   const bool is_lone = !slopes.has_neighbours[kI] && !slopes.has_neighbours[kR];
   guess_slopes(points_[n], keys_[n], isotropic_, is_lone ? nearby_->steepest(n) : 0.0, slopes);
   guess_lone_lines(points_[n], isotropic_, lines, slopes);

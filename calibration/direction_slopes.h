@@ -42,10 +42,11 @@ struct DirectionSlopes {
   std::array<double, 2> across_pole{};
 };
 
-/// ln f of a value that stands clear of zero, to be differentiated in its place.
+/// ln f of a value that stands clear of zero, to be differentiated in its place; and where it stands.
 struct SlopeOrdinate {
   double log_f = 0.0;
-  double u_log = -1.0;  ///< negative: the value has no logarithm
+  double u_log = -1.0;    ///< negative: the value has no logarithm
+  double cos_dphi = 1.0;  ///< of the reported directions
   [[nodiscard]] bool has_logarithm() const { return u_log >= 0.0; }
 };
 
@@ -66,7 +67,10 @@ class NearbySecants;
 ///   miss: (x_1 + x_2) / 3 g''' + (x_1^2 + x_1 x_2 + x_2^2) / 12 g'''' of their places x_1, x_2 from the point. Both
 ///   are taken as large as along the theta that has five points, along phi as for a function of sin(theta) cos(dphi);
 ///   where no line has five points, half of the derivative stands for it;
-/// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope;
+/// - phi lines of an isotropic sample are even about 0 and 180 deg; at either pole phi has no slope. Where two other
+///   points stand within reach, images aside, the first derivative is that of a polynomial in cos(dphi), times
+///   -sin(dphi): an isotropic f_r is a function of cos(dphi), and what depends on the phase angle or on the tilt of a
+///   facet is so through a sum linear in it (cos xi = mu_i mu_r + sin sin cos(dphi); 1 / cos^2 of the tilt likewise);
 /// - without a neighbour: |df/dtheta_i| is taken as large as |df/dtheta_r| and the other way round (equal for what
 ///   depends on the phase angle or on the tilt of a facet), phi as large as the larger of them times the smaller of
 ///   sin(theta_i) and sin(theta_r) (at either pole phi means nothing), and without a neighbour along either theta

@@ -46,7 +46,7 @@ struct Law {
   std::array<double, kDirectionAxes> slope{};
   std::array<double, kDirectionAxes> bend{};  ///< half the second derivative
   std::array<double, kDirectionAxes> u_angle{};
-  std::vector<double> rectangles;  ///< half widths
+  std::vector<double> rectangles;                 ///< half widths
   std::array<double, kUnknownAngles> arcsine2{};  ///< u^2, of each angle
 };
 

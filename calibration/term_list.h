@@ -17,8 +17,8 @@ struct ComponentTraits {
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
   Distribution distribution = Distribution::Normal;
   std::uint8_t unknown_angle = 0;  ///< Component::unknown_angle
-  std::string_view owner;        ///< Component::owner
-  bool is_pattern_known = true;  ///< Component::is_pattern_known
+  std::string_view owner;          ///< Component::owner
+  bool is_pattern_known = true;    ///< Component::is_pattern_known
   bool is_of_the_wander = false;
 };
 

@@ -121,16 +121,15 @@ const char* distribution_word(calibration::Distribution distribution) {
 api::BudgetTermReport term_report(const calibration::BudgetTerm& term, const calibration::Component& component,
                                   double variance) {
   const double per_sd = term.per_sd.si();
-  api::BudgetTermReport report{
-      .component = component.name,
-      .kind = component.kind == calibration::ComponentKind::Shared ? "shared" : "random",
-      .distribution = distribution_word(component.distribution),
-      .u = std::nullopt,
-      .unit = component.unit,
-      .sensitivity = std::nullopt,
-      .contribution_per_sr = std::abs(per_sd),
-      .share_percent = variance > 0.0 ? 100.0 * per_sd * per_sd / variance : 0.0,
-      .degrees_of_freedom = finite(component.degrees_of_freedom)};
+  api::BudgetTermReport report{.component = component.name,
+                               .kind = component.kind == calibration::ComponentKind::Shared ? "shared" : "random",
+                               .distribution = distribution_word(component.distribution),
+                               .u = std::nullopt,
+                               .unit = component.unit,
+                               .sensitivity = std::nullopt,
+                               .contribution_per_sr = std::abs(per_sd),
+                               .share_percent = variance > 0.0 ? 100.0 * per_sd * per_sd / variance : 0.0,
+                               .degrees_of_freedom = finite(component.degrees_of_freedom)};
   if (component.u > 0.0) {
     report.u = component.u;
     report.sensitivity = per_sd / component.u;

@@ -117,8 +117,8 @@ TEST(WeightedSum, TakesKFromBoundsAndFromFewDegreesOfFreedomAsAPointDoes) {
   const auto one = weighted_sum(components, std::vector<SumTerm>{{1.0, f(10.0), &lone.budget}});
   const auto both =
       weighted_sum(components, std::vector<SumTerm>{{1.0, f(10.0), &lone.budget}, {1.0, f(10.0), &turned.budget}});
-  const auto few =
-      weighted_sum(components, std::vector<SumTerm>{{1.0, f(10.0), &uncertain.budget}, {2.0, f(1.0), &uncertain.budget}});
+  const auto few = weighted_sum(
+      components, std::vector<SumTerm>{{1.0, f(10.0), &uncertain.budget}, {2.0, f(1.0), &uncertain.budget}});
 
   EXPECT_EQ(one.k, lone.budget.k);
   EXPECT_EQ(lone.budget.method, BudgetMethod::FormulaWithBounds);

@@ -103,7 +103,8 @@ TEST(DirectionSlopes, SayHowMuchTheirPointsDoNotResolve) {
 TEST(DirectionSlopes, OfALonePointOnTheFlankOfALobeAreOfTheSizeThatItsNeighboursSay) {
   constexpr double kWidth = 0.028;  // 1.6 deg
   const auto f = [](double, double r, double p) {
-    const double off = (r - std::numbers::pi / 3.0) * (r - std::numbers::pi / 3.0) + 0.75 * std::pow(p - std::numbers::pi, 2);
+    const double off =
+        (r - std::numbers::pi / 3.0) * (r - std::numbers::pi / 3.0) + 0.75 * std::pow(p - std::numbers::pi, 2);
     return 0.1 + 60.0 * std::exp(-off / (2.0 * kWidth * kWidth));
   };
   const std::vector<Geometry> places = {directions(60, 64.3, 181.6), directions(60, 63.2, 180.9),
@@ -125,10 +126,40 @@ TEST(DirectionSlopes, OfALonePointOnTheFlankOfALobeAreOfTheSizeThatItsNeighbours
 
 // Repeated readings of a matt surface: their noise over a small arc is no slope.
 TEST(DirectionSlopes, OfALonePointDoNotComeFromNoise) {
-  const auto points = measured({directions(60, 40.0, 90.0), directions(60, 40.1, 90.2), directions(60, 39.9, 90.1)},
-                               [](double, double, double p) { return 0.3 + 1e-6 * p; }, 1e-3);
+  const auto points = measured(
+      {directions(60, 40.0, 90.0), directions(60, 40.1, 90.2), directions(60, 39.9, 90.1)},
+      [](double, double, double p) { return 0.3 + 1e-6 * p; }, 1e-3);
 
   EXPECT_DOUBLE_EQ(slopes_of(points)[0].unresolved[kR], points[0].value.si());
+}
+
+// A glint (Beckmann's facets: ln f falls with tan^2 of their tilt) on a dark ground, azimuths 20 to 45 deg apart: what
+// a fit subtracts for the zero of phi_r hangs on these slopes.
+TEST(DirectionSlopes, AlongPhiOfAGlintAreAsFarOffAsTheySay) {
+  const auto f = [](double i, double r, double p) {
+    const double sum2 = std::pow(std::cos(i) + std::cos(r), 2);
+    const double cos_xi = std::cos(i) * std::cos(r) + std::sin(i) * std::sin(r) * std::cos(p);
+    const double tan2 = 2.0 * (1.0 + cos_xi) / sum2 - 1.0;
+    return 0.006 + 0.05 * std::exp(-tan2 / 0.054);
+  };
+  for (const auto& phis : {std::vector<double>{90, 135, 160, 180}, {0, 30, 60, 90, 120, 150, 180}}) {
+    const auto points = measured(grid({15, 30, 50}, {10, 20, 30, 40, 50, 60}, phis), f);
+    const auto slopes = slopes_of(points);
+    double missed2 = 0.0;
+    double unresolved2 = 0.0;
+    double all2 = 0.0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const Geometry& g = points[n].reported;
+      const double p = g.phi_r.si();
+      const double real =
+          (f(g.theta_i.si(), g.theta_r.si(), p + 1e-5) - f(g.theta_i.si(), g.theta_r.si(), p - 1e-5)) / 2e-5;
+      missed2 += std::pow(slopes[n].slope[kPhi] - real, 2);
+      unresolved2 += std::pow(slopes[n].unresolved[kPhi], 2);
+      all2 += real * real;
+    }
+    EXPECT_LE(missed2, unresolved2) << phis.size() << " azimuths";
+    EXPECT_LE(missed2, 0.04 * all2) << phis.size() << " azimuths";
+  }
 }
 
 TEST(DirectionSlopes, GoThroughTheNormalIntoTheOppositeHalfPlane) {
