@@ -236,7 +236,7 @@ struct NewVisit {
 };
 
 /// A 95.45 % interval that does not follow from a row's terms and degrees of freedom: by Monte Carlo, or with a
-/// dominant rectangular error. In sr^-1.
+/// dominant error that has bounds. In sr^-1.
 struct StoredInterval {
   double u_per_sr = 0.0;      ///< combined standard uncertainty
   double below_per_sr = 0.0;  ///< the interval is [value - below, value + above]
