@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -54,14 +55,15 @@ std::vector<AnalysisFact> comparison_facts(const ScanComparison& c) {
 std::string comparison_table(const MeasuredScan& first, const ScanComparison& c) {
   std::string table =
       "theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,first_per_sr,second_per_sr,difference_per_sr,u_per_sr,z,"
-      "difference_in_U\n";
+      "difference_in_U,u_interpolation_per_sr\n";
   for (const PointGap& gap : c.gaps) {
     const double f = in_per_steradian(first.points[gap.first].value);
     const double difference = in_per_steradian(gap.difference);
-    table += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.8g},{:.8g},{:.8g},{:.4g},{:.4g},{:.4g}\n",
-                         in_degrees(gap.geometry.theta_i), in_degrees(gap.geometry.phi_i),
-                         in_degrees(gap.geometry.theta_r), in_degrees(gap.geometry.phi_r), f, f - difference,
-                         difference, in_per_steradian(gap.u), gap.z, gap.z / kCoverage);
+    table +=
+        fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.8g},{:.8g},{:.8g},{:.8g},{:.4g},{:.4g},{:.8g}\n",
+                    in_degrees(gap.geometry.theta_i), in_degrees(gap.geometry.phi_i), in_degrees(gap.geometry.theta_r),
+                    in_degrees(gap.geometry.phi_r), f, f - difference, difference, in_per_steradian(gap.u), gap.z,
+                    gap.z / kCoverage, in_per_steradian(gap.u_interpolation));
   }
   return table;
 }
@@ -127,6 +129,35 @@ std::vector<std::string> cancel_notes(const MeasuredScan& first, const MeasuredS
   return notes;
 }
 
+// Where the table itself is what was measured: without its doubt between readings.
+std::vector<AnalysisFact> facts_of_exact_table(const ScanComparison& c) {
+  const std::string note = "the table between the file's readings taken for exact";
+  return {{.name = "chi-square, exact table",
+           .value = c.chi2,
+           .unit = "1",
+           .note = fmt::format("{}; {} degrees of freedom, p {:.3g}", note, c.degrees_of_freedom, c.p_value)},
+          {.name = "share within U, exact table", .value = share_within_u(c), .unit = "%", .note = note}};
+}
+
+std::string interpolation_note(const ScanComparison& c) {
+  std::vector<double> parts;
+  for (const PointGap& gap : c.gaps) parts.push_back(gap.u_interpolation / gap.u);
+  const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(parts.size() / 2);
+  std::ranges::nth_element(parts, middle);
+  return fmt::format(
+      "read between the file's readings as a table; what that may miss counts in u, as far as each reading is from its "
+      "neighbours: {:.2g} % of u in the median",
+      kPercent * *middle);
+}
+
+std::string outside_note(const ScanComparison& c, const reflectance::TableOptions& options) {
+  return fmt::format(
+      "not compared: {} points beyond the file's incidences or between two farther apart than {:.3g} deg, {} beyond "
+      "its views, {} in cells wider than {:.3g} deg",
+      c.outside.beyond_incidences, in_degrees(options.widest_incidence_step), c.outside.beyond_views,
+      c.outside.in_holes, in_degrees(options.widest_cell));
+}
+
 }  // namespace
 
 Result<Told> scans_compared(const MeasuredScan& first, const MeasuredScan& second, const std::string& stem) {
@@ -153,15 +184,20 @@ Result<Told> surface_compared(const MeasuredScan& scan, const ComparedSurface& o
 }
 
 Result<Told> table_compared(const MeasuredScan& scan, const ComparedTable& other, const std::string& stem) {
-  const auto compared = reflectance::compare_with_table(scan, other.table, other.readings);
+  using reflectance::BetweenReadings;
+  const auto compared = reflectance::compare_with_table(scan, other.table, other.readings, BetweenReadings::Uncertain);
   if (!compared) return failure(compared.error());
+  const auto as_exact = reflectance::compare_with_table(scan, other.table, other.readings, BetweenReadings::Exact);
+  if (!as_exact) return failure(as_exact.error());
   Told told = told_of(scan, *compared, other.name, stem);
+  std::ranges::move(facts_of_exact_table(*as_exact), std::back_inserter(told.facts));
   const bool has_u = std::ranges::any_of(other.readings.points, [](const reflectance::MeasuredPoint& p) {
     return !p.is_flagged && standard_u(p) > Brdf{};
   });
   told.notes.emplace_back(has_u ? "the file's own uncertainties count, with the weights of its readings"
-                                : "the file has no uncertainties: it is taken for exact");
-  told.notes.emplace_back("read between the file's readings as a table: what that misses is not in u");
+                                : "the file has no uncertainties: its readings are taken for exact");
+  told.notes.push_back(interpolation_note(*compared));
+  if (compared->unpaired_first > 0) told.notes.push_back(outside_note(*compared, other.table.options()));
   return told;
 }
 

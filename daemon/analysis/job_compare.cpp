@@ -55,10 +55,14 @@ Result<std::size_t> partner_channel(const MeasuredBrdf& first, std::size_t chann
   return failure(no_such_channel(first, channel, other));
 }
 
+// Coarse files are compared, too: what lies between readings as far apart as these has an uncertainty that says so.
+constexpr Angle kWidestCompared = degrees(60.0);
+
 // Directions of a file seldom are those of a scan: it is read as the table that a scene's `file` makes of it.
 Result<Told> file_compared(const MeasuredScan& scan, const Subject& other, std::size_t channel, const std::string& name,
                            const std::string& stem) {
-  const Result<formats::SurfaceFile> surfaces = formats::surfaces_of(other.brdf);
+  const Result<formats::SurfaceFile> surfaces =
+      formats::surfaces_of(other.brdf, {.widest_cell = kWidestCompared, .widest_incidence_step = kWidestCompared});
   if (!surfaces) return failure(surfaces.error());
   const auto made =
       std::ranges::find(surfaces->channels, other.brdf.channels[channel], &formats::ChannelSurface::channel);

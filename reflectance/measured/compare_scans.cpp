@@ -10,6 +10,7 @@
 #include "reflectance/check/chi_square.h"
 #include "reflectance/measured/common_components.h"
 #include "reflectance/measured/geometry_index.h"
+#include "reflectance/table/interpolation_uncertainty.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -81,6 +82,59 @@ Result<ScanComparison> compare_with(const MeasuredScan& given, Partner partner) 
        .limit = "at least one"});
 }
 
+// What a table says of each point of a scan.
+class TablePartner {
+ public:
+  TablePartner(const MeasuredScan& scan, const TabulatedSurface& table, const MeasuredScan& readings,
+               BetweenReadings between)
+      : table_(table),
+        between_(between),
+        readings_(with_unknown_as_random(readings)),
+        point_(usable_points(readings_)) {
+    // The readings' own components come after those of the scan, unless both name one source.
+    CommonComponents components;
+    (void)components.add(scan);
+    numbers_ = components.add(readings_);
+  }
+
+  std::optional<GroupMember> of(const MeasuredPoint& p) {
+    const DirectionPair pair = pair_of(p);
+    const TablePlace place = place_in(table_, pair.i, pair.r);
+    outside_.beyond_incidences += place == TablePlace::BeyondIncidences ? 1 : 0;
+    outside_.beyond_views += place == TablePlace::BeyondViews ? 1 : 0;
+    outside_.in_holes += place == TablePlace::InAHole ? 1 : 0;
+    if (place != TablePlace::Within) return std::nullopt;
+    std::vector<ReadingShare> shares;
+    (void)table_.shares(pair.i, pair.r, shares);
+    GroupMember member{.value = table_.eval(pair.i, pair.r).si(), .u_random = 0.0, .shared = {}};
+    double variance = 0.0;
+    for (const ReadingShare& share : shares) {
+      const GroupMember reading = group_member(readings_.points[point_[share.reading]], numbers_);
+      variance += share.weight * share.weight * reading.u_random * reading.u_random;
+      member.shared.add(reading.shared, share.weight);
+    }
+    u_interpolation_.push_back(between_ == BetweenReadings::Exact ? Brdf{}
+                                                                  : interpolation_uncertainty(table_, pair.i, pair.r));
+    member.u_random = std::hypot(kAsGoodAsExact * p.u_random.si(), std::sqrt(variance), u_interpolation_.back().si());
+    return member;
+  }
+
+  // What the comparison itself cannot know of its gaps, which are those that `of` gave a partner, in that order.
+  void add_told(ScanComparison& comparison) const {
+    comparison.outside = outside_;
+    for (std::size_t k = 0; k < comparison.gaps.size(); ++k) comparison.gaps[k].u_interpolation = u_interpolation_[k];
+  }
+
+ private:
+  const TabulatedSurface& table_;
+  BetweenReadings between_;
+  MeasuredScan readings_;
+  std::vector<std::size_t> point_;
+  std::vector<std::uint32_t> numbers_;
+  ScanComparison::OutsideTable outside_;
+  std::vector<Brdf> u_interpolation_;
+};
+
 }  // namespace
 
 const PointGap* ScanComparison::worst() const {
@@ -136,30 +190,14 @@ Result<ScanComparison> compare_with_surface(const MeasuredScan& scan, const Surf
 }
 
 Result<ScanComparison> compare_with_table(const MeasuredScan& scan, const TabulatedSurface& table,
-                                          const MeasuredScan& readings) {
+                                          const MeasuredScan& readings, BetweenReadings between) {
   GONIO_TRY(check(readings));
-  const MeasuredScan known = with_unknown_as_random(readings);
-  const std::vector<std::size_t> point = usable_points(known);
-  // The readings' own components come after those of the scan, unless both name one source.
-  CommonComponents components;
-  (void)components.add(scan);
-  const std::vector<std::uint32_t> numbers = components.add(known);
-  std::vector<ReadingShare> shares;
-  return compare_with(scan, [&](std::size_t, const MeasuredPoint& p) -> Result<std::optional<GroupMember>> {
-    const DirectionPair pair = pair_of(p);
-    shares.clear();
-    if (!table.shares(pair.i, pair.r, shares)) return std::optional<GroupMember>();
-    GroupMember member{
-        .value = table.eval(pair.i, pair.r).si(), .u_random = kAsGoodAsExact * p.u_random.si(), .shared = {}};
-    double variance = 0.0;
-    for (const ReadingShare& share : shares) {
-      const GroupMember reading = group_member(known.points[point[share.reading]], numbers);
-      variance += share.weight * share.weight * reading.u_random * reading.u_random;
-      member.shared.add(reading.shared, share.weight);
-    }
-    member.u_random = std::max(member.u_random, std::sqrt(variance));
-    return std::optional(std::move(member));
-  });
+  TablePartner partner(scan, table, readings, between);
+  Result<ScanComparison> comparison = compare_with(
+      scan, [&](std::size_t, const MeasuredPoint& p) -> Result<std::optional<GroupMember>> { return partner.of(p); });
+  if (!comparison) return comparison;
+  partner.add_told(*comparison);
+  return comparison;
 }
 
 }  // namespace gonio::reflectance

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -26,6 +27,7 @@ struct PointGap {
   Geometry geometry;       ///< of the first
   Brdf difference;         ///< first - second
   Brdf u;                  ///< k = 1, of what does not cancel
+  Brdf u_interpolation;    ///< what of u is doubt between the readings of a table; 0 beside others
   double z = 0.0;          ///< difference / u
 };
 
@@ -36,7 +38,14 @@ struct ScanComparison {
   double p_value = 1.0;             ///< the probability of a larger chi2 if both are the same
   std::size_t unpaired_first = 0;   ///< usable points without a partner
   std::size_t unpaired_second = 0;  ///< likewise
-  double mean_ratio = 0.0;          ///< sum of first / sum of second, over the pairs; 0 where the second is 0
+  /// Why points of the first have no partner beside a table: how many lie where of its readings.
+  struct OutsideTable {
+    std::size_t beyond_incidences = 0;
+    std::size_t beyond_views = 0;
+    std::size_t in_holes = 0;
+  };
+  OutsideTable outside;
+  double mean_ratio = 0.0;  ///< sum of first / sum of second, over the pairs; 0 where the second is 0
 
   /// The gap of the largest |z|; null without any.
   [[nodiscard]] const PointGap* worst() const;
@@ -53,11 +62,17 @@ struct ScanComparison {
 /// components of the scan count. Errors: likewise; a value of the surface that is not finite.
 [[nodiscard]] Result<ScanComparison> compare_with_surface(const MeasuredScan& scan, const Surface& surface);
 
+/// What a table is taken for between its readings.
+enum class BetweenReadings : std::uint8_t {
+  Uncertain,  ///< as good as its readings tell: interpolation_uncertainty counts, as each point's own
+  Exact,      ///< what was measured, as where it stood on the stage itself
+};
+
 /// A scan beside another instrument's readings, read between them as `table` does, which was made of the usable points
-/// of `readings`, in their order. Their uncertainties count by the table's weights, what both share (equal `source`)
-/// cancels; the interpolation's own error is not in u. Points that the table does not cover are counted as
-/// `unpaired_first`. Errors: likewise; InvalidInput where it covers none. `readings` may be without uncertainties.
+/// of `readings`, in their order, without reciprocal mixing. Their uncertainties count by the table's weights, what
+/// both share (equal `source`) cancels. Points that the table does not cover are counted as `unpaired_first` and by
+/// where they lie. Errors: likewise; InvalidInput where it covers none. `readings` may be without uncertainties.
 [[nodiscard]] Result<ScanComparison> compare_with_table(const MeasuredScan& scan, const TabulatedSurface& table,
-                                                        const MeasuredScan& readings);
+                                                        const MeasuredScan& readings, BetweenReadings between);
 
 }  // namespace gonio::reflectance

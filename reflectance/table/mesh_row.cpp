@@ -26,6 +26,16 @@ struct Corners {
   PlanePoint c;
 };
 
+double twice_area(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Barycentric: p = sum of weight x corner, wherever p lies.
+std::array<double, 3> affine_weights(const Corners& t, const PlanePoint& p) {
+  const double whole = twice_area(t.a, t.b, t.c);
+  return {twice_area(p, t.b, t.c) / whole, twice_area(t.a, p, t.c) / whole, twice_area(t.a, t.b, p) / whole};
+}
+
 // Gauss nodes on the square, folded to the triangle (Duffy): exact for polynomials of degree 2 order - 2.
 void over_triangle(const Corners& t, const UnitRule& rule, const QuadratureSink& sink) {
   const PlanePoint u{t.b.x - t.a.x, t.b.y - t.a.y};
@@ -97,6 +107,27 @@ Stencil MeshRow::locate(const Vector& r) const {
   else
     stencil.place = from_plane(p);
   return stencil;
+}
+
+std::vector<MeshRow::FarNode> MeshRow::across(const Vector& r) const {
+  const MeshPlace place = search_.locate(plane_point(r));
+  std::vector<FarNode> found;
+  if (!place.is_inside) return found;
+  const MeshTriangle& own = search_.triangles()[at(place.triangle)];
+  for (const std::int32_t beside : own.neighbour) {
+    if (beside == MeshTriangle::kNone) continue;
+    const std::array<std::int32_t, 3>& corners = search_.triangles()[at(beside)].corner;
+    const auto far = std::ranges::find_if(
+        corners, [&](std::int32_t c) { return std::ranges::find(own.corner, c) == own.corner.end(); });
+    if (far == corners.end()) continue;
+    const std::span<const PlanePoint> points = search_.points();
+    found.push_back(
+        {.node = at(*far),
+         .corner = {at(own.corner[0]), at(own.corner[1]), at(own.corner[2])},
+         .weight = affine_weights({points[at(own.corner[0])], points[at(own.corner[1])], points[at(own.corner[2])]},
+                                  points[at(*far)])});
+  }
+  return found;
 }
 
 std::vector<std::int32_t> MeshRow::around(std::size_t k) const {

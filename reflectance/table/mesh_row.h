@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -24,6 +25,14 @@ class MeshRow {
   [[nodiscard]] Stencil locate(const Vector& r) const;
   /// The same without node k (and its mirror image, when it has one), from the nodes around it; nothing on the border.
   [[nodiscard]] std::optional<Stencil> locate_without(std::size_t k, std::optional<std::size_t> mirror_image) const;
+  /// A node across a side of a triangle, as an affine sum of that triangle's corners: weights sum to 1, any sign.
+  struct FarNode {
+    std::size_t node = 0;
+    std::array<std::size_t, 3> corner{};
+    std::array<double, 3> weight{};
+  };
+  /// Of the triangle at r: as many as have a triangle across; none beyond the border.
+  [[nodiscard]] std::vector<FarNode> across(const Vector& r) const;
   /// Hands out the nodes of a quadrature over the hemisphere whose cells are the triangles, and beyond the border the
   /// sectors between it and the horizon. False, and nothing handed out, when the readings do not surround the normal.
   [[nodiscard]] bool quadrature(int order, const QuadratureSink& sink) const;

@@ -104,6 +104,31 @@ TableRow::Value TableRow::value_and_more(const Vector& r) const {
   return value;
 }
 
+std::optional<std::size_t> TableRow::measured_node(std::size_t k) const {
+  if (k < measured_) return k;
+  const Vector image{nodes_[k].r.x, -nodes_[k].r.y, nodes_[k].r.z};
+  for (std::size_t n = 0; n < measured_; ++n) {
+    if (nodes_[n].r == image) return n;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> TableRow::bends(const Vector& r) const {
+  const auto* mesh = std::get_if<MeshRow>(&place_);
+  if (mesh == nullptr) return std::nullopt;
+  std::vector<double> off;
+  for (const MeshRow::FarNode& far : mesh->across(r)) {
+    double continued = 0.0;
+    for (std::size_t k = 0; k < far.corner.size(); ++k) continued += far.weight[k] * nodes_[far.corner[k]].f;
+    off.push_back(nodes_[far.node].f - continued);
+  }
+  return off;
+}
+
+std::size_t TableRow::neighbourhoods() const {
+  return std::holds_alternative<RingRow>(place_) && !is_profile_ ? 2 : 1;
+}
+
 std::vector<double> TableRow::without(std::size_t k) const {
   std::vector<double> told;
   if (const auto* rings = std::get_if<RingRow>(&place_)) {

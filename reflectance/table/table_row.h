@@ -36,10 +36,19 @@ class TableRow {
   /// The nodes that make up `value(r)` (without a continuation beyond the reach), and of which readings each is made.
   [[nodiscard]] Stencil stencil(const Vector& r) const { return locate(r); }
   [[nodiscard]] const Origins& origins(std::size_t node) const { return origins_[node]; }
+  /// A node of a stencil: one of `nodes()`, or one that was added.
+  [[nodiscard]] const TableNode& node(std::size_t k) const { return nodes_[k]; }
+  /// The one of `nodes()` that a node of a stencil is, or is the mirror image of; nothing for a pole that was added.
+  [[nodiscard]] std::optional<std::size_t> measured_node(std::size_t k) const;
   /// Whether a stencil lies within the reach, in no hole.
   [[nodiscard]] bool is_covered(const Stencil& s) const { return s.is_inside && s.width <= widest_cell_; }
   /// What the other readings of this incidence would say of node k: nothing, one answer, or two.
   [[nodiscard]] std::vector<double> without(std::size_t k) const;
+  /// Of scattered views: how far each node across a side of the triangle at r lies off that triangle, continued to
+  /// there; up to three. Nothing on rings.
+  [[nodiscard]] std::optional<std::vector<double>> bends(const Vector& r) const;
+  /// How many answers `without` has where neighbours lie all around: two on rings, along and across, else one.
+  [[nodiscard]] std::size_t neighbourhoods() const;
   /// See MeshRow::quadrature.
   [[nodiscard]] bool quadrature(int order, const QuadratureSink& sink) const;
 

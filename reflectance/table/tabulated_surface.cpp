@@ -184,6 +184,25 @@ TabulatedSurface::Known TabulatedSurface::known_one_way(const Direction& i, cons
   return known;
 }
 
+void TabulatedSurface::visit_rows(const Direction& i, const Direction& r, const RowVisitor& visit) const {
+  at_places(index_.bracket(i), i, in_frame(i, r), [&](const TableRow& from, const Vector& place, double weight) {
+    visit(from, from.stencil(place), weight);
+  });
+}
+
+std::optional<double> TabulatedSurface::told_by_other_incidences(const TableRow& own, const Vector& view) const {
+  std::vector<RowIncidence> others = incidences(*rows_);
+  std::erase_if(others, [&](const RowIncidence& other) { return &(*rows_)[other.row] == &own; });
+  if (others.empty() || others.size() == rows_->size()) return std::nullopt;
+  const Direction i = Direction::from_angles(own.theta_i(), own.phi_i());
+  const IncidenceBracket bracket = IncidenceIndex(others, options_).bracket(i);
+  if (!bracket.is_covered) return std::nullopt;
+  double f = 0.0;
+  at_places(bracket, i, view,
+            [&](const TableRow& from, const Vector& place, double weight) { f += weight * from.value(place); });
+  return f;
+}
+
 bool TabulatedSurface::shares(const Direction& i, const Direction& r, std::vector<ReadingShare>& shares) const {
   assert(options_.beyond == BeyondReach::Hold);
   const IncidenceBracket bracket = index_.bracket(i);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -77,6 +79,13 @@ class TabulatedSurface {
   /// reading perhaps more than once. False where `covers` is, without reciprocal mixing. Not for BeyondReach::Continue,
   /// which is not linear in the readings (asserted).
   [[nodiscard]] bool shares(const Direction& i, const Direction& r, std::vector<ReadingShare>& shares) const;
+  /// Takes a row that a value is made of, where its view lies in that row, and the row's weight.
+  using RowVisitor = std::function<void(const TableRow& row, const Stencil& stencil, double weight)>;
+  /// All that known_one_way(i, r) is made of; the weights sum to 1, a row comes once for each feature that moves.
+  void visit_rows(const Direction& i, const Direction& r, const RowVisitor& visit) const;
+  /// What the other incidences make of a view of this one, which is one of `rows()`; `view` in the row's frame. Nothing
+  /// where they do not lie around it, as with the outermost, or farther apart than declared.
+  [[nodiscard]] std::optional<double> told_by_other_incidences(const TableRow& own, const Vector& view) const;
   [[nodiscard]] IncidenceBracket bracket(const Direction& i) const { return index_.bracket(i); }
   /// The row of a share of a bracket; one is made for the normal where it was not measured.
   [[nodiscard]] const TableRow& row(std::size_t k) const { return k < rows_->size() ? (*rows_)[k] : *normal_row_; }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include <fmt/format.h>
+
 #include "daemon/analysis/job.h"
 #include "daemon/analysis/model_text.h"
 #include "tests/daemon/analysis/stored_scans.h"
@@ -116,7 +118,29 @@ TEST_F(Comparisons, AFileIsReadBetweenItsReadingsAndItsUncertaintiesCount) {
   // Their shared 0.003 is the same at all of their readings, and so between them; ours are 0.001 and 1 % of 0.1.
   EXPECT_NEAR(fact(*done, "worst z"), -0.01 / std::hypot(0.001, 0.001, 0.003), 1e-3);
   EXPECT_THAT(done->notes, Contains(HasSubstr("the other: read as csv")));
+  EXPECT_THAT(done->notes, Contains(HasSubstr("not compared: 0 points beyond the file's incidences or between two "
+                                              "farther apart than 60 deg, 3 beyond its views, 0 in cells wider")));
   EXPECT_EQ(lines_of("scan-1-against-theirs.csv").size(), 10U);
+}
+
+TEST_F(Comparisons, ACoarseFileIsComparedWithTheDoubtBetweenItsReadings) {
+  const test::StoredValues store(daemon::test::bench_plan({40}, {20, 50}, {90, 105}), kTenth);
+  std::string csv = "theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_per_sr\n";
+  for (const int theta_i : {10, 60}) {
+    for (const int theta_r : {0, 40, 80}) {
+      for (int phi = 0; phi <= 180; phi += 45)
+        csv += fmt::format("{},0,{},{},{}\n", theta_i, theta_r, phi, 0.1 + 1e-3 * theta_r + 1e-3 * (theta_i - 40));
+    }
+  }
+  gonio::test::write_text(folder_ / "coarse.csv", csv);
+
+  const auto done = run(store.file(), {.kind = "compare", .scan = store.id()}, folder_ / "coarse.csv");
+
+  ASSERT_TRUE(done) << describe(done.error());
+  EXPECT_EQ(fact(*done, "points compared"), 4.0) << "cells of 40 by 45 deg, incidences 50 deg apart";
+  EXPECT_GT(fact(*done, "chi-square, exact table"), 2.0 * fact(*done, "chi-square"));
+  EXPECT_THAT(done->notes, Contains(HasSubstr("what that may miss counts in u")));
+  EXPECT_THAT(lines_of("scan-1-against-coarse.csv").front(), HasSubstr("u_interpolation_per_sr"));
 }
 
 TEST_F(Comparisons, WhatCannotBeComparedHasItsWord) {

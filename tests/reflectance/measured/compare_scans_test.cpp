@@ -7,6 +7,7 @@
 #include "reflectance/measured/repeatability.h"
 #include "tests/reflectance/measured/simulated_scan.h"
 #include "tests/reflectance/surfaces.h"
+#include "tests/reflectance/table/tables.h"
 
 namespace gonio::reflectance::test {
 namespace {
@@ -15,6 +16,12 @@ using ::testing::HasSubstr;
 
 // The standard is the same for both, its errors too; all else is drawn anew.
 const SimulatedErrors kErrors{.certificate = 0.05, .limb = 0.0, .zero_theta_r = 0.0};
+
+// About the mirror direction, where a reading every 10 deg has been taken out.
+bool in_hole(const Geometry& g) {
+  return std::abs(in_degrees(g.theta_r) - 30.0) < 15.0 &&
+         std::abs(in_degrees(wrapped(g.phi_r - degrees(180.0)))) < 45.0;
+}
 
 MeasuredScan scan_of(const Surface& truth, std::uint64_t seed) {
   return simulated_scan(truth, geometries({}), kErrors, seed);
@@ -120,6 +127,60 @@ TEST(CompareWithSurface, HoldsForTheTruthAndNotForAnother) {
   EXPECT_EQ(with_truth.degrees_of_freedom, scan.points.size());
   EXPECT_LT(with_other.p_value, 1e-6);
   EXPECT_GT(std::abs(with_other.worst()->z), 4.0);
+}
+
+// A laboratory's table of `truth`: incidences 20 deg apart, views of 25 by 30 deg, no uncertainty told.
+std::vector<TableReading> coarse_readings(const Surface& truth) {
+  std::vector<TableReading> readings;
+  for (const double theta_i : {10.0, 30.0, 50.0, 70.0})
+    add_grid(readings, truth, direction_deg(theta_i, 0.0), {.theta_step = 25.0, .phi_step = 30.0, .last = 75.0});
+  return readings;
+}
+
+MeasuredScan scan_of_readings(const std::vector<TableReading>& readings) {
+  MeasuredScan scan;
+  for (const TableReading& reading : readings)
+    scan.points.push_back({.geometry = reading.geometry, .value = reading.f.value});
+  return scan;
+}
+
+TEST(CompareWithTable, CountsWhatACoarseTableMayMissBetweenItsReadings) {
+  const std::vector<TableReading> readings = coarse_readings(wheat());
+  const TabulatedSurface table =
+      TabulatedSurface::make(readings, {.symmetry = TableSymmetry::Turn, .widest_cell = degrees(60.0)}).value();
+  const MeasuredScan scan = perfect_scan(wheat(), geometries({}), 1e-5);
+
+  const ScanComparison told =
+      compare_with_table(scan, table, scan_of_readings(readings), BetweenReadings::Uncertain).value();
+  const ScanComparison exact =
+      compare_with_table(scan, table, scan_of_readings(readings), BetweenReadings::Exact).value();
+
+  EXPECT_GT(told.gaps.size(), scan.points.size() / 2) << "cells of 25 by 30 deg are compared";
+  EXPECT_GT(std::abs(exact.worst()->z), 100.0) << "the table is not the wheat";
+  const auto held = std::ranges::count_if(told.gaps, [](const PointGap& gap) { return std::abs(gap.z) <= 2.0; });
+  EXPECT_GE(held, static_cast<long>(told.gaps.size()) * 95 / 100);
+  // Nor is the doubt so large that it says nothing: wheat changes by a third of itself within such cells.
+  for (const PointGap& gap : told.gaps) EXPECT_LT(gap.u, 0.2 * scan.points[gap.first].value);
+}
+
+TEST(CompareWithTable, SaysWhereTheTableEnds) {
+  std::vector<TableReading> readings;
+  for (const double theta_i : {30.0, 60.0})
+    add_grid(readings, wheat(), direction_deg(theta_i, 0.0), {.theta_step = 10.0, .phi_step = 30.0, .last = 50.0});
+  std::erase_if(readings,
+                [](const TableReading& r) { return r.geometry.theta_i < degrees(45.0) && in_hole(r.geometry); });
+  const TabulatedSurface table = TabulatedSurface::make(readings, {.symmetry = TableSymmetry::Turn}).value();
+  const MeasuredScan scan = perfect_scan(wheat(), {geometry(30, 45, 0), geometry(70, 20, 0), geometry(45, 70, 0),
+                                                   geometry(30, 65, 0), geometry(30, 30, 180)});
+
+  const ScanComparison told =
+      compare_with_table(scan, table, scan_of_readings(readings), BetweenReadings::Uncertain).value();
+
+  EXPECT_EQ(told.gaps.size(), 1U);
+  EXPECT_EQ(told.outside.beyond_incidences, 1U);
+  EXPECT_EQ(told.outside.beyond_views, 2U);
+  EXPECT_EQ(told.outside.in_holes, 1U);
+  EXPECT_EQ(told.unpaired_first, 4U);
 }
 
 TEST(ScanSymmetry, IsCheckedByTheScansOwnSharedParts) {
