@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "reflectance/formats/format.h"
@@ -12,6 +13,7 @@ namespace gonio::analysis {
 struct InputFile {
   formats::Format format = formats::Format::Csv;
   formats::MeasuredBrdf brdf;
+  std::vector<std::string> notes;  ///< what was taken for granted
 };
 
 /// Reads whatever `detect_format` finds; the JSON beside a CSV goes with it. Errors: FileUnreadable, those of

@@ -1,10 +1,7 @@
 #include "daemon/analysis/subject.h"
 
-#include <fmt/format.h>
-
 #include "daemon/analysis/input_file.h"
 #include "daemon/analysis/scan_data.h"
-#include "reflectance/formats/format.h"
 #include "reflectance/formats/scan_of_file.h"
 
 namespace gonio::analysis {
@@ -12,9 +9,7 @@ namespace gonio::analysis {
 Result<Subject> read_file_subject(const std::string& path) {
   Result<InputFile> file = read_input_file(path);
   if (!file) return failure(file.error());
-  return Subject{.scan = std::nullopt,
-                 .brdf = std::move(file->brdf),
-                 .notes = {fmt::format("read as {}", formats::format_name(file->format))}};
+  return Subject{.scan = std::nullopt, .brdf = std::move(file->brdf), .notes = std::move(file->notes)};
 }
 
 Result<Subject> read_stored_subject(const std::string& store_file, daemon::ScanId id) {

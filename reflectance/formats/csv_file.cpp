@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -86,7 +87,9 @@ class CsvReader {
     if (cells.size() != names_.size())
       return failure(lines_.error("", fmt::format("{} cells", cells.size()), fmt::format("{}", names_.size())));
     BrdfPoint point;
+    wavelength_nm_ = 0.0;
     for (std::size_t n = 0; n < cells.size(); ++n) GONIO_TRY(read_cell(names_[n], cells[n], point));
+    if (sidecar_ == nullptr) number_channel(point);
     brdf_.points.push_back(point);
     return {};
   }
@@ -100,24 +103,30 @@ class CsvReader {
       return {};
     }
     if (name == kFlagsColumn) return read_flags(cell, point);
-    // A sidecar's channels go by the channel column, a lone CSV's by the wavelength.
-    if (name == (sidecar_ != nullptr ? kChannelColumn : kWavelengthColumn)) return read_channel(name, cell, point);
-    return {};
-  }
-
-  Result<void> read_channel(const std::string& name, std::string_view cell, BrdfPoint& point) {
-    if (sidecar_ != nullptr) {
+    if (name == kChannelColumn) {
       const Result<std::size_t> index = lines_.whole(cell, name, 0, kMostPoints);
       if (!index) return failure(index.error());
       point.channel = static_cast<std::uint32_t>(*index);
       return {};
     }
+    if (sidecar_ != nullptr) return {};  // it knows the wavelengths, to the bit
     const Result<double> wavelength = trimmed(cell).empty() ? Result<double>(0.0) : lines_.number(cell, name);
     if (!wavelength) return failure(wavelength.error());
-    const auto [at, is_new] = by_wavelength_.emplace(*wavelength, static_cast<std::uint32_t>(brdf_.channels.size()));
-    if (is_new) brdf_.channels.push_back(*wavelength > 0.0 ? channel_at(*wavelength) : Channel{});
-    point.channel = at->second;
+    wavelength_nm_ = *wavelength;
     return {};
+  }
+
+  // A lone CSV's channels are what differs in its channel column, or in the wavelength.
+  void number_channel(BrdfPoint& point) {
+    const auto next = static_cast<std::uint32_t>(brdf_.channels.size());
+    const auto [at, is_new] = channels_.try_emplace(std::pair(point.channel, wavelength_nm_), next);
+    if (is_new) {
+      const bool is_numbered = std::ranges::count(names_, kChannelColumn) > 0;
+      brdf_.channels.push_back(wavelength_nm_ > 0.0 ? channel_at(wavelength_nm_)
+                               : is_numbered        ? Channel{.name = fmt::format("channel {}", point.channel)}
+                                                    : Channel{});
+    }
+    point.channel = at->second;
   }
 
   Result<void> read_flags(std::string_view cell, BrdfPoint& point) {
@@ -140,7 +149,8 @@ class CsvReader {
   TextLines lines_;
   const Sidecar* sidecar_;
   std::vector<std::string> names_;
-  std::map<double, std::uint32_t> by_wavelength_;
+  double wavelength_nm_ = 0.0;                                          ///< of the row that is read
+  std::map<std::pair<std::uint32_t, double>, std::uint32_t> channels_;  ///< by number and wavelength in the file
   MeasuredBrdf brdf_;
 };
 

@@ -17,10 +17,10 @@ namespace gonio::formats {
 [[nodiscard]] Result<Export> write_csv(const MeasuredBrdf& brdf);
 
 /// Columns in any order; those of a foreign CSV need their names changed to these. Blank lines, and lines that begin
-/// with '#', are passed over. Without a sidecar the channels are
-/// the wavelengths, and each flag's name is taken as it comes. Errors: InvalidInput with line and column: no such
-/// column, a missing one, too few or too many cells, no finite number, a last line without its end, another number of
-/// points than the sidecar says.
+/// with '#', are passed over. Without a sidecar a channel is what has a number of its own in the column `channel`, or a
+/// wavelength; each flag's name is taken as it comes; nothing is known of the sample, and its symmetry is
+/// `symmetry_of`. Errors: InvalidInput with line and column: no such column, a missing one, too few or too many cells,
+/// no finite number, a last line without its end, another number of points than the sidecar says.
 [[nodiscard]] Result<MeasuredBrdf> read_csv(std::string_view csv, std::optional<std::string_view> sidecar,
                                             const std::string& file);
 

@@ -118,6 +118,8 @@ TEST_F(Comparisons, AFileIsReadBetweenItsReadingsAndItsUncertaintiesCount) {
   // Their shared 0.003 is the same at all of their readings, and so between them; ours are 0.001 and 1 % of 0.1.
   EXPECT_NEAR(fact(*done, "worst z"), -0.01 / std::hypot(0.001, 0.001, 0.003), 1e-3);
   EXPECT_THAT(done->notes, Contains(HasSubstr("the other: read as csv")));
+  EXPECT_THAT(done->notes, Contains(HasSubstr("the other: no JSON beside the CSV: by its directions the sample is "
+                                              "taken for isotropic, left and right alike")));
   EXPECT_THAT(done->notes, Contains(HasSubstr("not compared: 0 points beyond the file's incidences or between two "
                                               "farther apart than 60 deg, 3 beyond its views, 0 in cells wider")));
   EXPECT_EQ(lines_of("scan-1-against-theirs.csv").size(), 10U);

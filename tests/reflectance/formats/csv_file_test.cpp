@@ -109,6 +109,20 @@ TEST(CsvFile, OfOthersMayHaveCommentsAndBlankLines) {
   EXPECT_EQ(read->points[1].f_per_sr, 2.0);
 }
 
+TEST(CsvFile, WithoutItsSidecarKeepsItsChannelsApart) {
+  MeasuredBrdf brdf = odd_brdf();
+  brdf.channels = {{.name = "R"}, channel_at(550.5), {.name = "B"}};
+  for (std::size_t n = 0; n < brdf.points.size(); ++n) brdf.points[n].channel = static_cast<std::uint32_t>(n % 3);
+  const Result<Export> written = write_csv(brdf);
+  ASSERT_TRUE(written) << describe(written.error());
+
+  const Result<MeasuredBrdf> read = read_csv(bytes_of(written, ".csv"), std::nullopt, "wheat.csv");
+
+  ASSERT_TRUE(read) << describe(read.error());
+  EXPECT_EQ(read->channels, (std::vector<Channel>{{.name = "channel 0"}, channel_at(550.5), {.name = "channel 2"}}));
+  for (std::size_t n = 0; n < brdf.points.size(); ++n) EXPECT_EQ(read->points[n].channel, n % 3);
+}
+
 struct BadCsv {
   std::string csv;
   int line;
