@@ -100,6 +100,26 @@ SlopePoint place_of(const PlannedPoint& point, const PairedPoint& pair, const In
           .state = static_cast<std::int32_t>(point.polarisation)};
 }
 
+// Readings lie where their memory was found, one by one: those of a point soon to come are called from memory
+// meanwhile.
+void call_readings(const std::vector<ReadingPair>& pairs, std::size_t n) {
+  constexpr std::size_t kReadingsAhead = 8;
+  constexpr std::size_t kFramesAhead = 4;  // of readings that have come by then
+  constexpr std::size_t kLine = 64;
+  if (n + kReadingsAhead >= pairs.size()) return;
+  for (const RawReading* reading : {pairs[n + kReadingsAhead].sample, pairs[n + kReadingsAhead].reference}) {
+    for (std::size_t at = 0; at < sizeof(RawReading); at += kLine) {
+      __builtin_prefetch(reinterpret_cast<const char*>(reading) + at);
+    }
+  }
+  for (const RawReading* reading : {pairs[n + kFramesAhead].sample, pairs[n + kFramesAhead].reference}) {
+    if (reading == nullptr) continue;
+    for (std::size_t at = 0; at < sizeof(RawFrame); at += kLine) {
+      __builtin_prefetch(reinterpret_cast<const char*>(reading->frames.data()) + at);
+    }
+  }
+}
+
 /// Works one block out, as far as it needs no other.
 class BlockDrafter {
  public:
@@ -111,6 +131,7 @@ class BlockDrafter {
     DraftBlock block;
     block.of_plan.reserve(last - first);
     for (std::size_t n = first; n < last; ++n) {
+      call_readings(pairs_, n);
       if (pairs_[n].sample == nullptr) continue;
       auto outcome = equate_one(n);
       if (!outcome) {
@@ -230,6 +251,7 @@ class BlockFinisher {
 
   CalibratedPoint finish(std::size_t k, TermStore& store) {
     const std::size_t n = block_.first + k;
+    call_readings(draft_.pairs, block_.of_plan[k]);
     equate_again(k);
     const DirectionSlopes slopes = around_.slopes.at(n);
     const ConeCorrection cones = cone_correction(pair_, slopes, shop_.instrument, shop_.standard);

@@ -25,16 +25,8 @@ class KeyNumbers {
   /// Whoever asks for keys in the order in which they first came, or back again, or for the same one twice, gets them
   /// without a search.
   std::uint32_t number_of(const Key& key) {
-    for (const std::size_t likely : {std::size_t{next_}, std::size_t{next_} - 1, std::size_t{next_} - 2}) {
-      if (likely < keys_.size() && keys_[likely] == key) return found(static_cast<std::uint32_t>(likely));
-    }
-    if (2 * (keys_.size() + 1) > slots_.size()) grow();
-    std::uint32_t& slot = slot_of(key);
-    if (slot == kFree) {
-      slot = static_cast<std::uint32_t>(keys_.size());
-      keys_.push_back(key);
-    }
-    return found(slot);
+    if (next_ < keys_.size() && keys_[next_] == key) return next_++;
+    return number_elsewhere(key);
   }
 
   /// By number.
@@ -45,6 +37,19 @@ class KeyNumbers {
  private:
   static constexpr std::uint32_t kFree = ~std::uint32_t{0};
 
+  // A few steps back, or anywhere.
+  [[gnu::noinline]] std::uint32_t number_elsewhere(const Key& key) {
+    for (const std::size_t likely : {std::size_t{next_} - 1, std::size_t{next_} - 2, std::size_t{next_} - 3}) {
+      if (likely < keys_.size() && keys_[likely] == key) return found(static_cast<std::uint32_t>(likely));
+    }
+    if (2 * (keys_.size() + 1) > slots_.size()) grow();
+    std::uint32_t& slot = slot_of(key);
+    if (slot == kFree) {
+      slot = static_cast<std::uint32_t>(keys_.size());
+      keys_.push_back(key);
+    }
+    return found(slot);
+  }
   std::uint32_t found(std::uint32_t number) {
     next_ = number + 1;
     return number;
