@@ -33,11 +33,11 @@ constexpr Milliseconds kMeasuringWindow{200};
 constexpr Milliseconds kPowerlessWindow{300};
 // An operator looks in so often, to resume a scan that holds because its instrument was gone.
 constexpr Milliseconds kOperatorEvery{100};
-const PlanOptions kPlan{.theta_i_deg = "[10, 25, 40, 55]",
+const PlanOptions kPlan{.theta_i_deg = "[10, 25, 40, 55, 65]",
                         .theta_r_deg = "{from = 0, to = 70, step = 10}",
                         .phi_r_deg = "[60, 100, 140, 180]",
                         .target_snr = 4000.0};
-constexpr long kPoints = 4 * (7 * 4 + 1);
+constexpr long kPoints = 5 * (7 * 4 + 1);
 constexpr double kTimeScale = 20.0;
 
 // Chance alone goes beyond these in one of 5000 runs; uncertainties wrong by a third always do.
