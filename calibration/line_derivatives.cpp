@@ -136,7 +136,7 @@ GONIO_INLINE void choose_second(const Orders& orders, const Vector& logarithm, c
 GONIO_INLINE void keep_square(const Orders& orders, std::size_t p, const Mask& has, LineLanes& to) {
   const Vector none = {};
   const Vector square = orders.own[p] * orders.own[p] - orders.own_noise2[p];
-  keep(has & (square > none) ? square : none, to);
+  keep((has & (square > none)) ? square : none, to);
 }
 
 GONIO_INLINE void differentiate_lanes(const LineNodes& nodes, LineDerivatives& found) {
