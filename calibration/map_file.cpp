@@ -30,6 +30,11 @@ Word word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return word;
 }
 
+template <class Word>
+void append(std::string& bytes, Word word) {
+  for (std::size_t k = 0; k < sizeof(Word); ++k) bytes.push_back(static_cast<char>((word >> (8 * k)) & 0xFFU));
+}
+
 // Fowler, Noll, Vo: FNV-1a with its 64-bit constants (draft-eastlake-fnv, section 5).
 std::uint64_t fnv1a(std::span<const std::uint8_t> bytes) {
   std::uint64_t hash = 0xcbf29ce484222325;
@@ -78,6 +83,20 @@ Result<MapFile> parse_map_file(std::span<const std::uint8_t> bytes, const std::s
     map.layers.push_back(std::move(pixels));
   }
   return map;
+}
+
+std::string map_file_bytes(const MapFile& map) {
+  std::string values;
+  for (const std::vector<float>& layer : map.layers) {
+    for (const float value : layer) append(values, std::bit_cast<std::uint32_t>(value));
+  }
+  std::string bytes(kMagic);
+  for (const int number : {1, map.width, map.height, static_cast<int>(map.layers.size())}) {
+    append(bytes, static_cast<std::uint32_t>(number));
+  }
+  for (const double u : map.u) append(bytes, std::bit_cast<std::uint64_t>(u));
+  append(bytes, fnv1a({reinterpret_cast<const std::uint8_t*>(values.data()), values.size()}));
+  return bytes + values;
 }
 
 }  // namespace gonio::calibration

@@ -32,4 +32,7 @@ struct MapFile {
 /// Errors: InvalidInput (not such a file, or damaged: the sum does not agree). `name` is shown in them.
 [[nodiscard]] Result<MapFile> parse_map_file(std::span<const std::uint8_t> bytes, const std::string& name);
 
+/// The bytes of such a file. Layers have width x height values each, and there are 1 to 4 of them.
+[[nodiscard]] std::string map_file_bytes(const MapFile& map);
+
 }  // namespace gonio::calibration

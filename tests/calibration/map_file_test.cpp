@@ -40,6 +40,13 @@ TEST(MapFile, ReadsLayersOneAfterTheOther) {
   EXPECT_EQ(map->u[1], 0.2);
 }
 
+TEST(MapFile, IsWrittenAsTheFormatIsDescribed) {
+  const MapFile map{.width = 2, .height = 1, .layers = {{1.5F, -2.0F}, {0.25F, 8.0F}}, .u = {0.1, 0.2}};
+  const Bytes described = test::map_bytes(2, 1, {{1.5F, -2.0F}, {0.25F, 8.0F}}, {0.1, 0.2});
+
+  EXPECT_EQ(map_file_bytes(map), std::string(described.begin(), described.end()));
+}
+
 TEST(MapFile, FindsOneWrongBitInTheValues) {
   Bytes bytes = test::map_bytes(2, 2, {{1, 2, 3, 4}});
   bytes.back() ^= 1U;
