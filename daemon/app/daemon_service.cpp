@@ -19,6 +19,7 @@
 #include "daemon/planner/order_report.h"
 #include "daemon/results/calibration_desk.h"
 #include "daemon/results/job_desk.h"
+#include "daemon/results/map_run.h"
 #include "daemon/results/results.h"
 #include "daemon/results/version_desk.h"
 #include "daemon/store/policy_names.h"
@@ -327,7 +328,9 @@ void DaemonService::use_calibration(std::int64_t version, const api::UseCalibrat
                           .device = "calibration",
                           .tried = fmt::format("use calibration {}", version),
                           .seen = "its job, " + found->job + ", changes no scan",
-                          .limit = "gonioctl calibration show says what it found"}));
+                          .limit = makes_maps(found->job) ? "gonioctl calibration maps writes its files: named in "
+                                                            "[detector.maps], they count from goniod's next start on"
+                                                          : "gonioctl calibration show says what it found"}));
   }
   command(who, UseCalibration{.version = version, .in_use = request.in_use, .reason = request.reason},
           std::move(reply));
@@ -543,6 +546,10 @@ Result<api::CalibrationReport> DaemonService::calibration(std::int64_t version) 
   const auto found = ask_store([version](StoreReader& store) { return found_version(store, version); });
   if (!found) return failure(found.error());
   return calibration_report(*found);
+}
+
+Result<std::string> DaemonService::calibration_map(std::int64_t version, const std::string& name) {
+  return ask_store([&](StoreReader& store) { return map_file_of(store, version, name); });
 }
 
 Result<api::ChartReport> DaemonService::calibration_chart(const std::string& standard) {

@@ -56,6 +56,7 @@ class DaemonService final : public Service {
                       Reply<api::CommandReport> reply) override;
   Result<api::CalibrationList> calibrations() override;
   Result<api::CalibrationReport> calibration(std::int64_t version) override;
+  Result<std::string> calibration_map(std::int64_t version, const std::string& name) override;
   Result<api::ChartReport> calibration_chart(const std::string& standard) override;
 
   Result<api::StatusReport> status() override;

@@ -60,7 +60,7 @@ void DetectorActor::take(const TakeFrame& request, Instant now) {
     post_(FrameAnswer{request.ticket, failure(std::move(begun).error())});
     return;
   }
-  exposure_ = Exposure{request.ticket, now + request.settings.exposure};
+  exposure_ = Exposure{request.ticket, now + request.settings.exposure, request.sums};
 }
 
 void DetectorActor::collect(Instant now) {
@@ -69,9 +69,9 @@ void DetectorActor::collect(Instant now) {
     exposure_->next_look = now + kBetweenLooks;
     return;
   }
-  const Ticket ticket = exposure_->ticket;
-  exposure_.reset();
-  post_(FrameAnswer{ticket, collected ? summary_of(**collected) : failure(std::move(collected).error())});
+  const Exposure over = *std::exchange(exposure_, std::nullopt);
+  post_(FrameAnswer{over.ticket,
+                    collected ? summary_of(**collected, over.sums.get()) : failure(std::move(collected).error())});
 }
 
 Result<void> DetectorActor::prepare_for(const drivers::Frame& frame) {
@@ -88,11 +88,20 @@ Result<void> DetectorActor::prepare_for(const drivers::Frame& frame) {
   return {};
 }
 
-Result<FrameSummary> DetectorActor::summary_of(const drivers::Frame& frame) {
+Result<FrameSummary> DetectorActor::summary_of(const drivers::Frame& frame, calibration::PixelSums* sums) {
   GONIO_TRY(prepare_for(frame));
   const calibration::FrameReducer& reducer = prepared_->reducer;
   const auto reduced = reducer.reduce(frame.pixels, in_seconds(frame.settings.exposure), frame.settings.gain_db);
   if (!reduced) return failure(reduced.error());
+  if (sums != nullptr) {
+    GONIO_TRY(calibration::add_frame(*sums,
+                                     {.pixels = frame.pixels,
+                                      .width = frame.width,
+                                      .height = frame.height,
+                                      .exposure = frame.settings.exposure,
+                                      .gain_db = frame.settings.gain_db},
+                                     reduction_.aperture));
+  }
   return FrameSummary{.region = reduced->raw,
                       .reduced = reduced->reduced,
                       .maps_version = reducer.version(),

@@ -42,12 +42,13 @@ class DetectorActor {
   struct Exposure {
     Ticket ticket = 0;
     Instant next_look{};
+    std::shared_ptr<calibration::PixelSums> sums;  ///< of a map job
   };
 
   void begin(const DetectorRequest& request, Instant now);
   void take(const TakeFrame& request, Instant now);
   void collect(Instant now);
-  [[nodiscard]] Result<FrameSummary> summary_of(const drivers::Frame& frame);
+  [[nodiscard]] Result<FrameSummary> summary_of(const drivers::Frame& frame, calibration::PixelSums* sums);
   [[nodiscard]] Result<void> prepare_for(const drivers::Frame& frame);
 
   drivers::Detector& detector_;

@@ -43,7 +43,7 @@ bool is_slow(RouteId id) {
          id == RouteId::ScanExport || id == RouteId::ScanOne || id == RouteId::ScanCompleteMissing ||
          id == RouteId::ScanRecompute || id == RouteId::CalibrationChart || id == RouteId::AnalysisFile ||
          id == RouteId::ReferenceImport || id == RouteId::ReferenceCheck || id == RouteId::ScanChecks ||
-         id == RouteId::ScanBudget;
+         id == RouteId::ScanBudget || id == RouteId::CalibrationMap;
 }
 
 HttpResponse no_such_route(const HttpRequest& request, const RouteMatch& match) {
@@ -236,6 +236,11 @@ HttpResponse Gateway::read(const HttpRequest& request, const RouteMatch& match) 
       return json_response(service_.calibrations());
     case RouteId::CalibrationOne:
       return json_response(service_.calibration(match.scan));
+    case RouteId::CalibrationMap: {
+      const auto name = request.query.find("name");
+      Result<std::string> bytes = service_.calibration_map(match.scan, name == request.query.end() ? "" : name->second);
+      return bytes ? success(api::kBytes, std::move(bytes).value()) : problem(bytes.error());
+    }
     case RouteId::CalibrationChart: {
       const auto standard = request.query.find("standard");
       return json_response(service_.calibration_chart(standard == request.query.end() ? "" : standard->second));

@@ -93,6 +93,8 @@ class Service {
   [[nodiscard]] virtual Result<api::CalibrationList> calibrations() = 0;
   /// Errors: NotFound.
   [[nodiscard]] virtual Result<api::CalibrationReport> calibration(std::int64_t version) = 0;
+  /// A file for [detector.maps] that the job made: "dark", "bad_pixels", "flat". Errors: NotFound, those of the fit.
+  [[nodiscard]] virtual Result<std::string> calibration_map(std::int64_t version, const std::string& name) = 0;
   /// Errors: NotFound (no run of such a check standard).
   [[nodiscard]] virtual Result<api::ChartReport> calibration_chart(const std::string& standard) = 0;
   /// Queues a job for the worker program. Errors: InvalidInput, NotFound, Busy.

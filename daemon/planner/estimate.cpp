@@ -128,9 +128,11 @@ class Walk {
   void visit_dark() { expose_dark(lowest_.value_or(0), highest_.value_or(forecast_.rungs().size() - 1)); }
 
   void expose_dark(std::size_t lowest, std::size_t highest) {
+    const bool is_map_job = plan_.calibration && api::makes_maps(plan_.calibration->job);
+    const int frames = is_map_job ? plan_.calibration->frames : kDarkFrames;
     for (std::size_t rung = lowest; rung <= highest; ++rung) {
-      time_.expose += kDarkFrames * forecast_.rungs()[rung];
-      time_.read += kDarkFrames * kReadTime;
+      time_.expose += frames * forecast_.rungs()[rung];
+      time_.read += frames * kReadTime;
     }
     last_dark_ = time_.total();
   }

@@ -338,6 +338,14 @@ Result<PlannedScan> expand(const api::Plan& plan, const Instrument& instrument, 
                          .limit = "no stated exposures: it has ranges, which are chosen",
                          .where = InputLocation{.field = "reading.exposure_s"}});
   }
+  if (instrument.detector.power && plan.calibration && api::makes_maps(plan.calibration->job)) {
+    return failure(Error{.code = ErrorCode::InvalidInput,
+                         .device = "plan",
+                         .tried = "make maps of the detector's pixels",
+                         .seen = "the detector is a radiometer",
+                         .limit = "a camera",
+                         .where = InputLocation{.field = "calibration.job"}});
+  }
   GONIO_TRY(rungs_of(plan.exposures, exposure_ladder(instrument.detector, plan.max_time)));
   return Expansion(plan, instrument, experience).run();
 }

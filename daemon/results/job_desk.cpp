@@ -14,6 +14,7 @@
 #include "calibration/jobs/linearity_ladder.h"
 #include "daemon/config/instrument.h"
 #include "daemon/results/brdf_means.h"
+#include "daemon/results/map_run.h"
 #include "daemon/results/transfer_run.h"
 #include "daemon/results/version_desk.h"
 #include "daemon/store/version_list.h"
@@ -71,6 +72,8 @@ Result<FoundValues> fitted(const api::PlanCalibration& wanted, const calibration
     case api::CalibrationJob::Transfer:
       return transfer_of(brdf, readings, master);
     case api::CalibrationJob::CheckStandard:
+    case api::CalibrationJob::DarkMap:  // of pixels, not of readings: map_run.h
+    case api::CalibrationJob::FlatField:
       break;
   }
   if (brdf.rows.size() == readings.points.size()) return run_of_check_standard(brdf);
@@ -147,8 +150,10 @@ Result<std::optional<NewFoundCalibration>> fit_job(StoreReader& reader, ScanId s
   if (!info) return failure(info.error());
   Result<ModelOfVersions> chosen = model_of(brdf, reader, *instrument, *readings);
   if (!chosen) return failure(chosen.error());
-  Result<FoundValues> found =
-      fitted(*plan->calibration, *readings, *instrument, chosen->model, brdf, info->reference_serial);
+  const api::PlanCalibration& wanted = *plan->calibration;
+  Result<FoundValues> found = api::makes_maps(wanted.job)
+                                  ? map_values_of(reader, scan, *instrument, wanted.job)
+                                  : fitted(wanted, *readings, *instrument, chosen->model, brdf, info->reference_serial);
   if (!found) return failure(found.error());
   return std::optional(
       NewFoundCalibration{.scan = scan,

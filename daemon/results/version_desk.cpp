@@ -98,7 +98,7 @@ AskedVersions asked_versions_of(const EventRecord& event) {
 }
 
 bool changes_scans(const std::string& job) {
-  return job != "check-standard" && job != "transfer";
+  return job != "check-standard" && job != "transfer" && job != "dark-map" && job != "flat-field";
 }
 
 Result<ModelOfVersions> model_with(const std::vector<FoundCalibration>& all, const AskedVersions& asked,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,16 @@ struct Job {
   std::optional<drivers::StageState> before;  ///< where no gate latches: the look before the exposure in hand
   std::optional<PowerRecord> monitor;         ///< a radiometer's in the lamp's light, over the exposure in hand
   std::optional<Error> gate_error;            ///< the gate was not seen in time; the camera's answer may say why
+  std::map<std::size_t, std::shared_ptr<calibration::PixelSums>> pixel_sums;  ///< of a map job, by rung
+  /// Those whose every frame counts: a rung that saturates counts whole or not at all.
+  [[nodiscard]] std::vector<PixelSumRecord> complete_sums() const {
+    std::vector<PixelSumRecord> complete;
+    for (const auto& [rung, sums] : pixel_sums) {
+      const std::int64_t frames = measurement->used_frames_of(rung);
+      if (frames > 0 && frames == sums->frames) complete.push_back(sums);
+    }
+    return complete;
+  }
   [[nodiscard]] bool is_visit() const { return kind == Kind::Dark || kind == Kind::Reference || kind == Kind::Check; }
   [[nodiscard]] bool is_lit() const { return kind != Kind::Dark && kind != Kind::Park; }
 };

@@ -150,6 +150,14 @@ std::vector<std::size_t> Measurement::used_rungs() const {
   return {rungs.begin(), rungs.end()};
 }
 
+std::int64_t Measurement::used_frames_of(std::size_t rung) const {
+  std::int64_t frames = 0;
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    if (readings_[k].used && rung_of_reading_[k] == rung) ++frames;
+  }
+  return frames;
+}
+
 // Its frames so far count on.
 void Measurement::return_to(std::size_t rung) {
   rung_ = rung;

@@ -35,6 +35,8 @@ class Measurement {
   [[nodiscard]] std::size_t rung_of(std::size_t reading) const { return rung_of_reading_[reading]; }
   /// The rungs of those that count, each once, ascending.
   [[nodiscard]] std::vector<std::size_t> used_rungs() const;
+  /// How many of a rung's count.
+  [[nodiscard]] std::int64_t used_frames_of(std::size_t rung) const;
   /// How many of them count, on the last rung.
   [[nodiscard]] int used_frames() const { return on_rung_; }
   /// Their mean in the aperture.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -67,6 +68,9 @@ struct TakeFrame {
   Ticket ticket = 0;
   drivers::ExposureSettings settings;
   std::optional<PowerSettings> power;  ///< of a radiometer
+  /// Of a map job: the frame is added to it before the answer, and whoever asks touches it after the answer only. A
+  /// frame that cannot be added is an error. Nullptr: frames are condensed and gone.
+  std::shared_ptr<calibration::PixelSums> sums = nullptr;
 };
 /// Open the detector, write its settings, read them back.
 struct PrepareDetector {

@@ -58,6 +58,18 @@ ReadingRecord reading_from(const Job& job, Duration exposure) {
                        .monitor_power = job.monitor};
 }
 
+// The dark, and the standard, which is the even light. The sample's own pattern is no map of pixels.
+bool keeps_sums(const ActiveScan& scan, const Job& job) {
+  const bool is_of_standard = job.kind == Job::Kind::Item && job.item.target == Target::Reference;
+  return scan.policy.map_frames > 0 && (job.kind == Job::Kind::Dark || is_of_standard);
+}
+
+std::shared_ptr<calibration::PixelSums> sums_for(Job& job, std::size_t rung) {
+  auto& sums = job.pixel_sums[rung];
+  if (!sums) sums = std::make_shared<calibration::PixelSums>();
+  return sums;
+}
+
 }  // namespace
 
 // ---- beginning ----
@@ -180,7 +192,8 @@ void Sequencer::Impl::take_light(Instant now) {
   if (config.instrument.monitor) ask_monitor(MonitorUse::Reading, TakeMonitor{.window = exposure});
   ask_detector(DetectorUse::Frame,
                TakeFrame{.settings = {.exposure = exposure, .gain_db = config.instrument.detector.gain_db},
-                         .power = scan->power_settings(rung)});
+                         .power = scan->power_settings(rung),
+                         .sums = keeps_sums(*scan, job) ? sums_for(job, rung) : nullptr});
 }
 
 // Without a gate the encoders are read before and after: the exposure begins when the first look has come, and the
@@ -322,7 +335,8 @@ void Sequencer::Impl::accept_job(Instant now) {
 }
 
 void Sequencer::Impl::accept_item(Job& job, Instant now) {
-  const NewAttempt attempt = attempt_of(job, AttemptOutcome::Accepted, now);
+  NewAttempt attempt = attempt_of(job, AttemptOutcome::Accepted, now);
+  attempt.pixel_sums = job.complete_sums();
   for (const std::size_t rung : job.measurement->used_rungs()) scan->note_rung(rung);
   scan->most_frames = std::max(scan->most_frames, job.measurement->used_frames());
   scan->items.accept(job.item, now);

@@ -133,6 +133,7 @@ Detour Sequencer::Impl::detour_of(NextJob visit, const std::optional<ItemKey>& i
 // ---- the dark ----
 
 int Sequencer::Impl::dark_frames() const {
+  if (scan->policy.map_frames > 0) return scan->policy.map_frames;
   return std::clamp(scan->most_frames, kFewestDarkFrames, kMostDarkFrames);
 }
 
@@ -148,8 +149,11 @@ void Sequencer::Impl::start_dark(Instant now) {
 }
 
 void Sequencer::Impl::accept_dark(Job& job, Instant now) {
-  const NewVisit visit{
-      .scan = scan->id, .time = job.time, .readings = job.measurement->readings(), .started = job.started};
+  const NewVisit visit{.scan = scan->id,
+                       .time = job.time,
+                       .readings = job.measurement->readings(),
+                       .started = job.started,
+                       .pixel_sums = job.complete_sums()};
   scan->end_estimate.add_dark(job.time);
   scan->last_dark = now;
   scan->dark_owed = false;

@@ -70,9 +70,9 @@ void RecordWriter::operator()(const NewScan& scan) {
       "block_ns, "
       "dark_every_ns, item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, drift_limit, "
       "drift_rounds, reference_mode, anchor_theta_i_deg, anchor_theta_r_deg, anchor_phi_r_deg, asked, merged, blocked, "
-      "items, state, finish_asked, "
+      "map_frames, items, state, finish_asked, "
       "outcome, who, run_id, submitted_utc_ns, submitted_boottime_ns, changed_utc_ns) "
-      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
+      "VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'queued',0,'',?,?,?,?,?)");
   scan.idempotency_key.empty() ? insert.bind_null() : insert.bind(scan.idempotency_key);
   insert.bind(scan.name);
   campaign == 0 ? insert.bind_null() : insert.bind(campaign);
@@ -88,7 +88,8 @@ void RecordWriter::operator()(const NewScan& scan) {
   insert.bind(kReferenceModeNames[static_cast<std::size_t>(scan.policy.reference_mode)]);
   insert.bind(in_degrees(scan.policy.anchor.theta_i)).bind(in_degrees(scan.policy.anchor.theta_r));
   insert.bind(in_degrees(scan.policy.anchor.phi_r));
-  insert.bind(scan.planned.asked).bind(scan.planned.merged).bind(scan.planned.blocked).bind(scan.planned.items);
+  insert.bind(scan.planned.asked).bind(scan.planned.merged).bind(scan.planned.blocked);
+  insert.bind(scan.policy.map_frames).bind(scan.planned.items);
   insert.bind(scan.who).bind(time_.run).bind(time_.utc_ns).bind(time_.boottime_ns).bind(time_.utc_ns).run();
   new_scan_ = database_.last_id();
   write_plan_parts(scan.plan_parts);
@@ -192,6 +193,7 @@ void RecordWriter::operator()(const NewAttempt& attempt) {
   const std::int64_t id = database_.last_id();
   std::int64_t sequence = 0;
   for (const ReadingRecord& reading : attempt.readings) write_reading(reading, id, 0, ++sequence);
+  for (const PixelSumRecord& sums : attempt.pixel_sums) write_pixel_sums(*sums, id, 0);
   if (attempt.outcome == AttemptOutcome::Accepted) write_item(attempt.scan, attempt.item, id, "", "");
 }
 
@@ -223,6 +225,7 @@ void RecordWriter::operator()(const NewVisit& visit) {
   const std::int64_t id = database_.last_id();
   std::int64_t sequence = 0;
   for (const ReadingRecord& reading : visit.readings) write_reading(reading, 0, id, ++sequence);
+  for (const PixelSumRecord& sums : visit.pixel_sums) write_pixel_sums(*sums, 0, id);
   if (visit.level) write_level(visit, id);
   for (const ItemKey& item : visit.reopened) reopen(visit.scan, item, id);
 }

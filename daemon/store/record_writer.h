@@ -54,6 +54,7 @@ class RecordWriter {
   void bind_time_parts(Statement& statement, const TimeParts& time);
   void write_power(std::int64_t reading, const char* role, const PowerRecord& power);
   void write_reading(const ReadingRecord& reading, std::int64_t attempt, std::int64_t visit, std::int64_t sequence);
+  void write_pixel_sums(const calibration::PixelSums& sums, std::int64_t attempt, std::int64_t visit);
   void write_reduction(const calibration::ReducedMean& reduced, const std::string& maps_version, std::int64_t reading);
   void write_level(const NewVisit& visit, std::int64_t id);
   void reopen(ScanId scan, const ItemKey& item, std::int64_t visit);

@@ -51,20 +51,22 @@ std::string_view visit_kind_name(VisitKind kind) {
 }
 
 ScanPolicy policy_of(const api::Plan& plan) {
-  return ScanPolicy{.target_snr = plan.target_snr,
-                    .max_time = plan.max_time,
-                    .exposures = plan.exposures,
-                    .block = plan.block,
-                    .dark_every = plan.dark_every,
-                    .item_retries = plan.item_retries,
-                    .on_item_error = plan.on_item_error,
-                    .on_restart = plan.on_restart,
-                    .reference_every = plan.reference_every,
-                    .check_every = plan.check_every,
-                    .drift_limit = plan.drift_limit,
-                    .drift_rounds = plan.drift_rounds,
-                    .reference_mode = plan.reference_mode,
-                    .anchor = plan.anchor};
+  return ScanPolicy{
+      .target_snr = plan.target_snr,
+      .max_time = plan.max_time,
+      .exposures = plan.exposures,
+      .block = plan.block,
+      .dark_every = plan.dark_every,
+      .item_retries = plan.item_retries,
+      .on_item_error = plan.on_item_error,
+      .on_restart = plan.on_restart,
+      .reference_every = plan.reference_every,
+      .check_every = plan.check_every,
+      .drift_limit = plan.drift_limit,
+      .drift_rounds = plan.drift_rounds,
+      .reference_mode = plan.reference_mode,
+      .anchor = plan.anchor,
+      .map_frames = plan.calibration && api::makes_maps(plan.calibration->job) ? plan.calibration->frames : 0};
 }
 
 ScanPolicy policy_of(const api::Plan& plan, const PlannedScan& planned) {

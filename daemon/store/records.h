@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "calibration/jobs/found_values.h"
+#include "calibration/jobs/pixel_sums.h"
 #include "calibration/raw_reading.h"
 #include "daemon/planner/planned_scan.h"
 #include "drivers/detector.h"
@@ -102,6 +104,10 @@ struct ReadingRecord {
 
 // ---- what can be written ----
 
+/// What a map job keeps of the frames of one attempt or visit at one exposure: a row of `pixel_sum`. Complete: nobody
+/// adds to it any more.
+using PixelSumRecord = std::shared_ptr<const calibration::PixelSums>;
+
 /// How a scan is measured once its points are fixed: the plan's parts that the sequencer goes by, stored with the scan.
 struct ScanPolicy {
   double target_snr = 300.0;
@@ -118,6 +124,7 @@ struct ScanPolicy {
   int drift_rounds = 2;        ///< how often a point is measured again for it
   api::ReferenceMode reference_mode = api::ReferenceMode::SameGeometry;
   Geometry anchor{.theta_i = {}, .phi_i = {}, .theta_r = degrees(45.0), .phi_r = {}};  ///< in anchor mode
+  int map_frames = 0;  ///< of a map job: frames of each exposure in a dark visit, and frames are summed; 0: no such job
   friend bool operator==(const ScanPolicy&, const ScanPolicy&) = default;
 };
 [[nodiscard]] ScanPolicy policy_of(const api::Plan& plan);
@@ -215,6 +222,7 @@ struct NewAttempt {
   TimeParts time;
   std::vector<ReadingRecord> readings;
   Instant started{};
+  std::vector<PixelSumRecord> pixel_sums{};  ///< of a map job's accepted reading of the standard
 };
 /// Decides an item without a reading.
 struct SkipItem {
@@ -233,6 +241,7 @@ struct NewVisit {
   VisitKind kind = VisitKind::Dark;
   std::optional<VisitLevel> level;  ///< of a reference or check visit
   std::vector<ItemKey> reopened;
+  std::vector<PixelSumRecord> pixel_sums{};  ///< of a map job's dark
 };
 
 /// A 95.45 % interval that does not follow from a row's terms and degrees of freedom: by Monte Carlo, or with a

@@ -191,7 +191,7 @@ std::optional<ScanHead> read_head(Database& database, ScanId scan) {
   Statement& query = database.statement(
       "SELECT isotropic, target_snr, max_time_ns, exposures_ns, block_ns, dark_every_ns, item_retries, on_item_error, "
       "on_restart, reference_every_ns, check_every_ns, drift_limit, drift_rounds, reference_mode, anchor_theta_i_deg, "
-      "anchor_theta_r_deg, anchor_phi_r_deg FROM scan WHERE scan_id = ?");
+      "anchor_theta_r_deg, anchor_phi_r_deg, map_frames FROM scan WHERE scan_id = ?");
   query.bind(scan);
   while (query.next()) {
     const ScanPolicy policy = policy_from_row(query, 1);

@@ -438,9 +438,34 @@ CREATE TABLE brdf_interval(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1, kVersion2,  kVersion3,  kVersion4,
-                                                              kVersion5, kVersion6,  kVersion7,  kVersion8,
-                                                              kVersion9, kVersion10, kVersion11, kVersion12};
+// Version 13: sums of frames, pixel by pixel, of the attempts and visits of jobs that make maps; sums and squares are
+// float64, exact whole numbers of DN and DN^2.
+constexpr const char* kVersion13 = R"sql(
+ALTER TABLE scan ADD COLUMN map_frames INTEGER NOT NULL DEFAULT 0;
+CREATE TABLE pixel_sum(
+  pixel_sum_id INTEGER PRIMARY KEY,
+  attempt_id INTEGER REFERENCES attempt,
+  visit_id INTEGER REFERENCES visit,
+  exposure_ns INTEGER NOT NULL,
+  gain_db REAL NOT NULL,
+  frames INTEGER NOT NULL,
+  width_px INTEGER NOT NULL,
+  height_px INTEGER NOT NULL,
+  left_px INTEGER NOT NULL,
+  top_px INTEGER NOT NULL,
+  columns_px INTEGER NOT NULL,
+  rows_px INTEGER NOT NULL,
+  sums_dn BLOB NOT NULL,
+  squares_dn2 BLOB NOT NULL,
+  CHECK ((attempt_id IS NULL) <> (visit_id IS NULL))
+) STRICT;
+CREATE INDEX pixel_sum_by_attempt ON pixel_sum(attempt_id);
+CREATE INDEX pixel_sum_by_visit ON pixel_sum(visit_id);
+)sql";
+
+constexpr std::array<const char*, kSchemaVersion> kMigrations{kVersion1,  kVersion2,  kVersion3, kVersion4, kVersion5,
+                                                              kVersion6,  kVersion7,  kVersion8, kVersion9, kVersion10,
+                                                              kVersion11, kVersion12, kVersion13};
 
 int version_of(Database& database) {
   Statement& query = database.statement("PRAGMA user_version");

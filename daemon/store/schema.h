@@ -6,7 +6,7 @@
 namespace gonio::daemon {
 
 /// What this program writes: PRAGMA user_version.
-inline constexpr int kSchemaVersion = 12;
+inline constexpr int kSchemaVersion = 13;
 
 /// Brings the file to kSchemaVersion, forward only, each step in its own transaction. Errors: StoreTooNew, StoreFailed,
 /// DiskFull.

@@ -9,6 +9,7 @@
 #include "daemon/store/database.h"
 #include "daemon/store/found_calibrations.h"
 #include "daemon/store/past_scans.h"
+#include "daemon/store/pixel_sum_rows.h"
 #include "daemon/store/scan_readings.h"
 #include "daemon/store/schema.h"
 #include "daemon/store/unfinished_scans.h"
@@ -142,6 +143,12 @@ class SqliteStoreReader final : public StoreReader {
     return look([&] { return read_found_calibrations(*database_); });
   }
 
+  Result<PixelStacks> pixel_stacks(ScanId id) override {
+    auto stacks = look([&] { return read_pixel_stacks(*database_, id); });
+    if (!stacks) return failure(stacks.error());
+    return std::move(*stacks);
+  }
+
   Result<std::vector<UnfinishedScan>> unfinished(Instant now, UtcTime utc_now) override {
     return look([&] { return read_unfinished(*database_, now, utc_now); });
   }
@@ -169,7 +176,7 @@ class SqliteStoreReader final : public StoreReader {
                 "configuration_hash, submitted_utc_ns, changed_utc_ns, merged, blocked, items, target_snr, "
                 "max_time_ns, exposures_ns, block_ns, dark_every_ns, item_retries, on_item_error, on_restart, "
                 "reference_every_ns, check_every_ns, drift_limit, drift_rounds, reference_mode, anchor_theta_i_deg, "
-                "anchor_theta_r_deg, anchor_phi_r_deg FROM scan "
+                "anchor_theta_r_deg, anchor_phi_r_deg, map_frames FROM scan "
                 "s "
                 "JOIN sample p USING (sample_id) JOIN reference_standard USING (reference_id) "
                 "LEFT JOIN campaign c USING (campaign_id) WHERE s.scan_id = ?")

@@ -103,6 +103,12 @@ struct FoundCalibration {
   bool counts = false;               ///< the last use of its job names it
 };
 
+/// The frames that a map job has summed, all readings of one exposure together; one stack for each exposure.
+struct PixelStacks {
+  std::vector<calibration::PixelStack> dark;
+  std::vector<calibration::PixelStack> lit;  ///< of the standard
+};
+
 /// Reads the store on its own read-only connection, beside the writer. Threads: one; any number of readers, also in
 /// other processes. Every call is one consistent look. Errors of all: StoreFailed; NotFound for a scan that is not
 /// there.
@@ -129,6 +135,9 @@ class StoreReader {
   [[nodiscard]] virtual Result<BrdfInfo> brdf(ScanId id) = 0;
   /// All that calibration jobs have found, oldest first.
   [[nodiscard]] virtual Result<std::vector<FoundCalibration>> found_calibrations() = 0;
+  /// Of the accepted readings and the dark visits of a map job's scan; none of another. Errors: IncompleteData (sums of
+  /// two apertures or gains).
+  [[nodiscard]] virtual Result<PixelStacks> pixel_stacks(ScanId id) = 0;
   /// What the last finished scans of this configuration took beside what was predicted for them.
   [[nodiscard]] virtual Result<TimeExperience> time_experience(const std::string& configuration_hash) = 0;
   /// All scans that are not over, oldest first. For the sequencer's start.

@@ -148,7 +148,8 @@ ScanPolicy policy_from_row(const Statement& row, int first) {
                     .anchor = {.theta_i = degrees(row.real(first + 13)),
                                .phi_i = {},
                                .theta_r = degrees(row.real(first + 14)),
-                               .phi_r = degrees(row.real(first + 15))}};
+                               .phi_r = degrees(row.real(first + 15))},
+                    .map_frames = static_cast<int>(row.integer(first + 16))};
 }
 
 std::vector<ScanPoint> read_points(Database& database, ScanId scan, std::int32_t after, std::int64_t at_most) {
@@ -247,7 +248,8 @@ std::vector<UnfinishedScan> read_unfinished(Database& database, Instant now, Utc
       "SELECT scan_id, state, finish_asked, name, isotropic, configuration_hash, merged, target_snr, max_time_ns, "
       "exposures_ns, "
       "block_ns, dark_every_ns, item_retries, on_item_error, on_restart, reference_every_ns, check_every_ns, "
-      "drift_limit, drift_rounds, reference_mode, anchor_theta_i_deg, anchor_theta_r_deg, anchor_phi_r_deg FROM scan "
+      "drift_limit, drift_rounds, reference_mode, anchor_theta_i_deg, anchor_theta_r_deg, anchor_phi_r_deg, map_frames "
+      "FROM scan "
       "WHERE state NOT IN ('done', 'finished-early', 'aborted', 'failed') ORDER BY scan_id");
   while (query.next()) {
     scans.push_back(UnfinishedScan{.id = query.integer(0),

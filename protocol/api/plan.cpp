@@ -187,6 +187,7 @@ Result<Plan> parse_plan(std::string_view toml, const std::string& file,
   read_reference(root->table("reference"), plan);
   read_visits(*root, plan);
   refuse_targets_beside_a_beam(*root, plan);
+  check_flat_field(*root, plan);
   read_order(*root, plan);
   read_on_error(*root, plan);
   read_on_restart(*root, plan);

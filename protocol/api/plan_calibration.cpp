@@ -110,6 +110,9 @@ bool read_calibration(TomlReader& root, Plan& plan) {
   if (wanted.job == CalibrationJob::Linearity) wanted.order = static_cast<int>(table->integer_or("order", 2, 1, 3));
   if (wanted.job == CalibrationJob::ArmZeros) read_arm_zeros(*table, plan, wanted);
   if (wanted.job == CalibrationJob::DirectBeam) read_direct_beam(*table, plan);
+  constexpr int kMostFrames = 4096;
+  if (makes_maps(wanted.job))
+    wanted.frames = static_cast<int>(table->integer_or("frames", wanted.frames, 2, kMostFrames));
   plan.calibration = wanted;
   return wanted.job == CalibrationJob::ArmZeros || wanted.job == CalibrationJob::DirectBeam;
 }
@@ -124,6 +127,19 @@ void refuse_targets_beside_a_beam(TomlReader& root, const Plan& plan) {
     const std::string_view visits = plan.check_every > Duration::zero() ? "check_s" : "reference_s";
     root.table("visits").fail(visits, ErrorCode::InvalidInput, "visits of a target that is not there",
                               "dark_s only: straight through nothing stands on the stage");
+  }
+}
+
+void check_flat_field(TomlReader& root, const Plan& plan) {
+  if (!plan.calibration || plan.calibration->job != CalibrationJob::FlatField || root.has_failed()) return;
+  if (plan.exposures.empty()) {
+    root.table("reading").fail("exposure_s", ErrorCode::MissingKey, "exposures chosen reading by reading",
+                               "one at least: a reading's frames of one exposure are summed");
+  }
+  if (plan.reference_mode != ReferenceMode::SameGeometry) {
+    root.table("reference")
+        .fail("mode", ErrorCode::InvalidInput, "a standard that is not read at the plan's geometries",
+              "mode = \"same-geometry\": the standard is the even light");
   }
 }
 

@@ -12,18 +12,32 @@ namespace gonio::api {
 struct Plan;
 
 /// What a scan is measured for, beside its BRDF.
-enum class CalibrationJob : std::uint8_t { Linearity, ArmZeros, CheckStandard, DirectBeam, Transfer };
-inline constexpr std::array<std::string_view, 5> kCalibrationJobNames{"linearity", "arm-zeros", "check-standard",
-                                                                      "direct-beam", "transfer"};
+enum class CalibrationJob : std::uint8_t {
+  Linearity,
+  ArmZeros,
+  CheckStandard,
+  DirectBeam,
+  Transfer,
+  DarkMap,
+  FlatField
+};
+inline constexpr std::array<std::string_view, 7> kCalibrationJobNames{
+    "linearity", "arm-zeros", "check-standard", "direct-beam", "transfer", "dark-map", "flat-field"};
 [[nodiscard]] constexpr std::string_view calibration_job_name(CalibrationJob job) {
   return kCalibrationJobNames[static_cast<std::size_t>(job)];
+}
+
+/// Whether it makes maps of the detector's pixels: its scan keeps sums of frames, pixel by pixel.
+[[nodiscard]] constexpr bool makes_maps(CalibrationJob job) {
+  return job == CalibrationJob::DarkMap || job == CalibrationJob::FlatField;
 }
 
 /// [calibration] of a plan.
 struct PlanCalibration {
   CalibrationJob job = CalibrationJob::CheckStandard;
-  int order = 2;   ///< linearity: of the polynomial
-  Angle u_mirror;  ///< arm-zeros: of the mirror's normal against a sample's, k = 1
+  int order = 2;    ///< linearity: of the polynomial
+  Angle u_mirror;   ///< arm-zeros: of the mirror's normal against a sample's, k = 1
+  int frames = 32;  ///< dark-map, flat-field: of each exposure, in each dark visit
 };
 
 /// Reads the section, where there is one, into `plan.calibration`; of arm-zeros and direct-beam also the points, which
@@ -34,6 +48,10 @@ struct PlanCalibration {
 /// A direct beam is read without visits of any target: mode and [visits] of its plan say nothing else. Errors are
 /// recorded in the reader.
 void refuse_targets_beside_a_beam(TomlReader& root, const Plan& plan);
+
+/// A flat field needs stated exposures and readings of the standard at its own geometries. Errors are recorded in the
+/// reader.
+void check_flat_field(TomlReader& root, const Plan& plan);
 
 /// A linearity's exposures, ascending until here, climb and come down again. Errors are recorded in the reader.
 void make_ladder(TomlReader& root, Plan& plan);

@@ -57,6 +57,7 @@ enum class RouteId : std::uint8_t {
   ReferenceOne,
   ScanChecks,
   ScanBudget,
+  CalibrationMap,
 };
 
 /// One way into the daemon. A name in braces, as `{scan}`, stands for a number.
@@ -138,6 +139,8 @@ inline constexpr std::array kRoutes{
     Route{RouteId::ReferenceOne, Method::Get, "/api/v1/reference", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::ScanChecks, Method::Get, "/api/v1/scans/{scan}/checks", Permission::Viewer, "", kJson, false, 0},
     Route{RouteId::ScanBudget, Method::Get, "/api/v1/scans/{scan}/budget", Permission::Viewer, "", kJson, false, 0},
+    Route{RouteId::CalibrationMap, Method::Get, "/api/v1/calibrations/{version}/map", Permission::Viewer, "", kBytes,
+          false, 0},
 };
 
 constexpr bool routes_are_in_order() {

@@ -110,6 +110,30 @@ TEST_F(DetectorActorTest, AnswersWithTheStatisticsOfTheMask) {
   EXPECT_LE(clock.now() - start, 207ms);
 }
 
+TEST_F(DetectorActorTest, AddsFramesToTheSumsThatAreAskedForBeforeItAnswers) {
+  detector.pixels = {9, 104, 9, 100, 102, 100, 9, 104, 9};
+  const auto sums = std::make_shared<calibration::PixelSums>();
+  ask(TakeFrame{.ticket = 7, .settings = {200ms, 3.0}, .sums = sums});
+  run_for_answers(1);
+  ask(TakeFrame{.ticket = 8, .settings = {200ms, 3.0}});
+  run_for_answers(2);
+
+  EXPECT_EQ(sums->frames, 1) << "the second frame is nobody's";
+  EXPECT_EQ(sums->exposure, 200ms);
+  EXPECT_EQ(sums->sum, (std::vector<double>{9, 104, 9, 100, 102, 100, 9, 104, 9}));
+}
+
+TEST_F(DetectorActorTest, AFrameThatDoesNotFitItsSumsIsAnError) {
+  const auto sums = std::make_shared<calibration::PixelSums>();
+  ask(TakeFrame{.ticket = 7, .settings = {200ms, 3.0}, .sums = sums});
+  run_for_answers(1);
+  ask(TakeFrame{.ticket = 8, .settings = {100ms, 3.0}, .sums = sums});
+  run_for_answers(2);
+
+  expect_failure(1, ErrorCode::IncompleteData);
+  EXPECT_EQ(sums->frames, 1);
+}
+
 TEST_F(DetectorActorTest, DoesNotLookBeforeTheExposureIsOver) {
   ask(TakeFrame{7, {10s, 0.0}});
   executor.run_for(9999ms);

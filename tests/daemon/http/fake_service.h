@@ -93,6 +93,7 @@ class FakeService final : public daemon::Service {
   Result<api::ChartReport> calibration_chart(const std::string& standard) override {
     return api::ChartReport{.standard = standard, .quantity = "mean REFF", .verdict = "in control"};
   }
+  Result<std::string> calibration_map(std::int64_t, const std::string& name) override { return "map of " + name; }
   static api::CalibrationReport zeros() {
     return {.version = 2,
             .job = "arm-zeros",

@@ -161,6 +161,29 @@ TEST_F(PowerCut, AtARandomOperationOfTheDiskLosesNothingAndDoublesNothing) {
   report(first_seed, figures, std::chrono::steady_clock::now() - begin);
 }
 
+// Sums stand in the transaction of their reading: each is whole, or is not there and its frames are taken again.
+TEST_F(PowerCut, LeavesAMapJobTheSumsOfWholeReadings) {
+  for (std::uint64_t seed = 1; seed <= 10 && !HasFailure(); ++seed) {
+    SCOPED_TRACE("cut of seed " + std::to_string(seed));
+    std::mt19937_64 chance(seed);
+    const ScratchFolder folder;
+    PowerCutDisk disk;
+    ScanRig rig(test::bench_instrument(), folder.file("store.sqlite"));
+    const ScanId id = rig.submit(test::map_plan());
+    constexpr std::uint64_t kLastOperation = 60;
+    disk.cut_at(disk.operations() + std::uniform_int_distribution<std::uint64_t>(1, kLastOperation)(chance));
+    run_until_cut(rig, disk);
+    disk.restore(chance());
+    EXPECT_FALSE(damage_of(rig.store_path(), rig.events).any());
+    rig.start();
+    rig.run_to_rest();
+
+    expect_each_item_once(rig, id);
+    test::expect_sums_of_whole_readings(rig, id);
+    rig.kill();
+  }
+}
+
 TEST_F(PowerCut, AgainAndAgainWhileItRecoversStillArrives) {
   const std::uint64_t seed = number_from("GONIO_CUT_SEED", 1);
   SCOPED_TRACE("seed " + std::to_string(seed));

@@ -367,11 +367,51 @@ void ScanRig::take_frame(const TakeFrame& take) {
   }
   world.gate_open_until = clock_.now() + take.settings.exposure;
   world.frame_due = world.gate_open_until + world.frame_takes;
-  tell(take.settings.exposure + world.frame_takes, FrameAnswer{take.ticket, frame_of(take.settings)});
+  const FrameSummary frame = frame_of(take.settings);
+  if (take.sums) {
+    const std::vector<std::uint16_t> pixels(64, static_cast<std::uint16_t>(frame.region.mean));
+    const auto added = calibration::add_frame(*take.sums,
+                                              {.pixels = pixels,
+                                               .width = 8,
+                                               .height = 8,
+                                               .exposure = take.settings.exposure,
+                                               .gain_db = take.settings.gain_db},
+                                              {.centre_x_px = 4.0, .centre_y_px = 4.0, .radius_px = 2.0});
+    EXPECT_TRUE(added) << describe(added.error());
+  }
+  tell(take.settings.exposure + world.frame_takes, FrameAnswer{take.ticket, frame});
   if (!watched_) return;
   after(take.settings.exposure + milliseconds(1), [this, watch = *std::exchange(watched_, std::nullopt)] {
     sequencer_->on(StageAnswer{.ticket = watch.ticket, .state = look()}, clock_.now());
   });
+}
+
+api::Plan map_plan() {
+  api::Plan plan = bench_plan({30}, {10, 20}, {90});
+  plan.target_snr = 200;
+  plan.max_time = milliseconds(2);
+  plan.exposures = {milliseconds(1)};
+  plan.calibration = api::PlanCalibration{.job = api::CalibrationJob::FlatField, .frames = 3};
+  return plan;
+}
+
+void expect_sums_of_whole_readings(ScanRig& rig, ScanId id) {
+  const std::string readings =
+      "(SELECT r.attempt_id, r.visit_id, exposure_ns, sum(used) AS frames FROM reading r LEFT JOIN attempt a ON "
+      "a.attempt_id = r.attempt_id WHERE r.visit_id IS NOT NULL OR (outcome = 'accepted' AND target = 'reference') "
+      "GROUP BY r.attempt_id, r.visit_id, exposure_ns)";
+  EXPECT_GE(rig.count("SELECT count(*) FROM pixel_sum WHERE attempt_id IS NOT NULL"), 2);
+  EXPECT_GE(rig.count("SELECT count(*) FROM pixel_sum WHERE visit_id IS NOT NULL"), 2);
+  EXPECT_EQ(rig.count("SELECT count(*) FROM pixel_sum"), rig.count("SELECT count(*) FROM " + readings));
+  EXPECT_EQ(rig.count("SELECT count(*) FROM pixel_sum p JOIN " + readings +
+                      " r ON p.attempt_id IS r.attempt_id AND p.visit_id IS r.visit_id AND p.exposure_ns = "
+                      "r.exposure_ns AND p.frames = r.frames"),
+            rig.count("SELECT count(*) FROM pixel_sum"));
+  const auto stacks = StoreReader::open(rig.store_path()).value()->pixel_stacks(id);
+  ASSERT_TRUE(stacks) << describe(stacks.error());
+  for (const calibration::PixelStack& dark : stacks->dark) EXPECT_EQ(dark.mean(0), 100.0);
+  ASSERT_EQ(stacks->lit.size(), 1U);
+  EXPECT_EQ(stacks->lit[0].mean(0), 400.0) << "100 DN and 300 000 DN/s for 1 ms";
 }
 
 }  // namespace gonio::daemon::test

@@ -135,4 +135,10 @@ class ScanRig {
   CommandId last_command_ = 0;
 };
 
+/// A flat field on the bench instrument, two points, 3 frames of each exposure in a dark.
+[[nodiscard]] api::Plan map_plan();
+/// Each accepted reading of the standard and each dark has the sums of just its frames that count, and nothing else has
+/// any; their means are those of the scripted camera.
+void expect_sums_of_whole_readings(ScanRig& rig, ScanId id);
+
 }  // namespace gonio::daemon::test

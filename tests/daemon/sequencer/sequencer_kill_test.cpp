@@ -42,6 +42,29 @@ void expect_nothing_lost_or_doubled(ScanRig& rig, ScanId id, int kills) {
   }
 }
 
+// Of the two readings of the standard and all darks.
+void kill_a_map_job_at_every_step() {
+  ScanRig unbroken;
+  unbroken.submit(test::map_plan());
+  int steps = 0;
+  while (unbroken.step()) ++steps;
+  ASSERT_GT(steps, 50);
+
+  for (int kill_after = 1; kill_after <= steps && !testing::Test::HasFailure(); ++kill_after) {
+    SCOPED_TRACE("killed after step " + std::to_string(kill_after));
+    ScanRig rig;
+    const ScanId id = rig.submit(test::map_plan());
+    for (int k = 0; k < kill_after; ++k) rig.step();
+    rig.kill();
+    rig.start();
+    rig.run_to_rest();
+
+    EXPECT_EQ(rig.state_of(id), ScanState::Done);
+    EXPECT_EQ(rig.count("SELECT count(*) FROM item WHERE outcome = 'accepted'"), 4);
+    test::expect_sums_of_whole_readings(rig, id);
+  }
+}
+
 void kill_at_every_step(Duration frame_takes) {
   const int steps = steps_of_unbroken_scan(frame_takes);
   ASSERT_GT(steps, 50);
@@ -83,6 +106,19 @@ void kill_at_every_step(Duration frame_takes) {
 
 TEST(SequencerKill, KilledAtEveryStepOfAScanItLosesAndDoublesNothing) {
   kill_at_every_step(std::chrono::milliseconds(2));
+}
+
+TEST(SequencerKill, KilledAtEveryStepOfAMapJobItsSumsAreThoseOfWholeReadings) {
+  kill_a_map_job_at_every_step();
+}
+
+TEST(SequencerKill, AnOrdinaryScanKeepsNoSums) {
+  ScanRig rig;
+  const ScanId id = rig.submit(small_plan());
+  rig.run_to_rest();
+
+  EXPECT_EQ(rig.state_of(id), ScanState::Done);
+  EXPECT_EQ(rig.count("SELECT count(*) FROM pixel_sum"), 0);
 }
 
 TEST(SequencerKill, NorDoesItWhereTheArmsLeaveLongBeforeTheFrameComes) {

@@ -186,6 +186,20 @@ TEST_F(OldStore, OfVersion1KeepsItsBrdfWithIntervalsOfItsOwnTermsAndTheSignsThat
   EXPECT_FALSE(brdf->rows[0].interval.has_value());
 }
 
+TEST_F(OldStore, OfVersion1HasNoSumsOfFrames) {
+  write("version_1.sql");
+  const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);
+  ASSERT_TRUE(writer) << describe(writer.error());
+  const auto reader = StoreReader::open(path_);
+  ASSERT_TRUE(reader) << describe(reader.error());
+
+  const auto stacks = (*reader)->pixel_stacks(1);
+
+  ASSERT_TRUE(stacks) << describe(stacks.error());
+  EXPECT_TRUE(stacks->dark.empty() && stacks->lit.empty());
+  EXPECT_EQ((*reader)->scan(1)->policy.map_frames, 0);
+}
+
 TEST_F(OldStore, OfVersion1HasFoundNothingByCalibrationJobs) {
   write("version_1.sql");
   const auto writer = StoreWriter::open({.path = path_, .boot_id = "boot-a", .version = "test"}, clock_);

@@ -431,5 +431,47 @@ TEST_F(Store, GivesBackWhatARadiometerSaidAndKeepsTheMonitorsWordBesideIt) {
             30'000'000);
 }
 
+PixelSumRecord sums_of(Duration exposure, double first, double second) {
+  return std::make_shared<calibration::PixelSums>(
+      calibration::PixelSums{.box = {.width = 4, .height = 3, .left = 1, .top = 2, .columns = 2, .rows = 1},
+                             .exposure = exposure,
+                             .frames = 2,
+                             .sum = {first + second, 2.0 * first},
+                             .sum2 = {first * first + second * second, 2.0 * first * first}});
+}
+
+TEST_F(Store, KeepsSumsOfFramesWithTheirReadingsAndJoinsThoseOfAnExposure) {
+  using std::chrono::milliseconds;
+  const ScanId scan = accept_scan();
+  for (const std::int32_t point : {0, 1}) {
+    NewAttempt lit = attempt(scan, point);
+    lit.pixel_sums = {sums_of(milliseconds(4), 10.0, 14.0), sums_of(milliseconds(8), 20.0, 22.0)};
+    ASSERT_TRUE(commit({lit}));
+  }
+  NewVisit dark{.scan = scan, .readings = {reading_of(100.0, clock_.now())}, .started = clock_.now()};
+  dark.pixel_sums = {sums_of(milliseconds(4), 1.0, 3.0)};
+  ASSERT_TRUE(commit({dark}));
+  NewAttempt doubled = attempt(scan, 0);
+  doubled.pixel_sums = {sums_of(milliseconds(4), 10.0, 14.0)};
+  EXPECT_FALSE(commit({doubled})) << "accepted already: its sums go with it";
+
+  const auto stacks = open_reader()->pixel_stacks(scan);
+
+  ASSERT_TRUE(stacks) << describe(stacks.error());
+  ASSERT_EQ(stacks->lit.size(), 2U);
+  EXPECT_EQ(stacks->lit[0].exposure(), milliseconds(4));
+  EXPECT_EQ(stacks->lit[0].frames(), 4);
+  EXPECT_EQ(stacks->lit[0].degrees_of_freedom(), 2);
+  EXPECT_EQ(stacks->lit[0].mean(0), 12.0);
+  EXPECT_EQ(stacks->lit[0].variance(0), 8.0) << "(10 - 12)^2 + (14 - 12)^2, twice, of two degrees of freedom";
+  EXPECT_EQ(stacks->lit[0].variance(1), 0.0);
+  EXPECT_EQ(stacks->lit[1].mean(0), 21.0);
+  EXPECT_EQ(stacks->lit[0].box(),
+            (calibration::PixelBox{.width = 4, .height = 3, .left = 1, .top = 2, .columns = 2, .rows = 1}));
+  ASSERT_EQ(stacks->dark.size(), 1U);
+  EXPECT_EQ(stacks->dark[0].mean(0), 2.0);
+  EXPECT_TRUE(open_reader()->pixel_stacks(scan + 1)->dark.empty());
+}
+
 }  // namespace
 }  // namespace gonio::daemon

@@ -149,6 +149,30 @@ TEST(PlanCalibration, ADirectBeamIsReadStraightThroughAndOnFourSidesOfItAgainstN
   EXPECT_NEAR(places[4].second, 180.0 + along_phi, 1e-8);
 }
 
+TEST(PlanCalibration, AFlatFieldIsReadOnTheStandardAtStatedExposures) {
+  const std::string flat = changed(kLadder, "job = \"linearity\"\norder = 1", "job = \"flat-field\"\nframes = 64");
+  const auto plan = parse_plan(flat, "job.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_EQ(plan->calibration->job, CalibrationJob::FlatField);
+  EXPECT_EQ(plan->calibration->frames, 64);
+  EXPECT_EQ(plan->exposures.size(), 4U) << "no ladder: it does not come down again";
+  EXPECT_EQ(error_of(changed(flat, "exposure_s = [0.001, 0.004, 0.002, 0.008]\n", "")).where->field,
+            "reading.exposure_s");
+  EXPECT_EQ(error_of(flat + "mode = \"anchor\"\n").where->field, "reference.mode");
+  EXPECT_EQ(error_of(changed(flat, "frames = 64", "frames = 1")).where->field, "calibration.frames");
+}
+
+TEST(PlanCalibration, ADarkMapChoosesItsExposuresAsAnyScan) {
+  const auto plan = parse_plan(changed(changed(kLadder, "job = \"linearity\"\norder = 1", "job = \"dark-map\""),
+                                       "exposure_s = [0.001, 0.004, 0.002, 0.008]\n", ""),
+                               "job.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_EQ(plan->calibration->job, CalibrationJob::DarkMap);
+  EXPECT_GE(plan->calibration->frames, 2);
+}
+
 TEST(PlanCalibration, ADirectBeamTakesNoTargetBesideIt) {
   const std::string beam(kBeam);
 
