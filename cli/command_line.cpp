@@ -175,6 +175,9 @@ class CommandLine {
     certificate.add_option("--expires", wanted_.expires, "the last day on which it holds, as 2027-11-22")->required();
     certificate.add_option("--longest-gap-nm", wanted_.longest_gap_nm,
                            "between wavelengths so far apart it may be drawn straight (1)");
+    version_leaf(calibration, "maps", "of a dark-map or flat-field: its files for [detector.maps] of instrument.toml",
+                 Verb::CalibrationMaps)
+        .add_option("--to", wanted_.result, "the folder they go to (here)");
     leaf(calibration, "chart", "the control chart of a check standard", Verb::CalibrationChart)
         ->add_option("standard", wanted_.standard, "its name: the sample of its plans")
         ->required();

@@ -24,7 +24,7 @@ std::string path_of(api::RouteId id, std::int64_t scan, const std::string& query
 std::chrono::seconds patience(api::RouteId id) {
   if (id == api::RouteId::Stop) return kStopPatience;
   const bool waits = id == api::RouteId::StageMove || id == api::RouteId::StageHome || id == api::RouteId::ScanExport ||
-                     id == api::RouteId::AnalysisFile;
+                     id == api::RouteId::AnalysisFile || id == api::RouteId::CalibrationMap;
   return waits ? kForever : kPatience;
 }
 

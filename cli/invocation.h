@@ -60,6 +60,7 @@ enum class Verb : std::uint8_t {
   CalibrationUse,
   CalibrationChart,
   CalibrationCertificate,
+  CalibrationMaps,
   ScanRecompute,
   ReferenceShow,
   ReferenceCheck,

@@ -1,9 +1,11 @@
 #include "cli/run.h"
 
+#include <fmt/format.h>
 #include <sys/random.h>
 
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <ostream>
 
 #include "base/clock.h"
@@ -22,6 +24,7 @@
 #include "cli/scan_watch.h"
 #include "cli/transfer_certificate.h"
 #include "cli/views.h"
+#include "protocol/api/plan_calibration.h"
 
 namespace gonio::cli {
 namespace {
@@ -166,6 +169,8 @@ class Runner {
         return use_calibration();
       case Verb::CalibrationCertificate:
         return print_certificate();
+      case Verb::CalibrationMaps:
+        return write_maps();
       case Verb::CalibrationChart:
         return show_chart();
       case Verb::ScanRecompute:
@@ -276,6 +281,27 @@ class Runner {
                                       : "calibration " + std::to_string(wanted_.scan) + " counts no more")
                << "; a scan that was computed before: gonioctl scan recompute SCAN\n";
     return done;
+  }
+
+  // Which maps there are, the job says.
+  Result<int> write_maps() {
+    const auto found = client_.get<api::CalibrationReport>(RouteId::CalibrationOne, wanted_.scan);
+    if (!found) return failure(found.error());
+    std::vector<std::string> names{"dark", "bad_pixels"};
+    if (found->value.job == api::calibration_job_name(api::CalibrationJob::FlatField)) names.emplace_back("flat");
+    std::string lines = "[detector.maps]\n";
+    for (const std::string& name : names) {
+      const Result<std::string> bytes = client_.text(RouteId::CalibrationMap, wanted_.scan, "name=" + name);
+      if (!bytes) return failure(bytes.error());
+      const std::string file = fmt::format("{}-{}.map", name, wanted_.scan);
+      GONIO_TRY(write_file((std::filesystem::path(wanted_.result) / file).string(), *bytes));
+      lines += fmt::format("{} = \"{}\"\n", name, file);
+    }
+    world_.out << lines;
+    world_.err << found->value.note
+               << "\nthey count for frames taken after goniod's next start with these lines in "
+                  "instrument.toml, the files beside it; what is stored stays as it was reduced\n";
+    return 0;
   }
 
   // Exit code 1: the last run breaks a rule.

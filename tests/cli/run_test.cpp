@@ -333,6 +333,14 @@ TEST_F(Gonioctl, UsesACalibrationAndEndsItsUseWithAReason) {
   EXPECT_THAT(service_.asked(), ElementsAre("use 2 yes [] local", "use 2 no [arm taken apart] local"));
 }
 
+TEST_F(Gonioctl, WritesTheMapsOfAJobAndTheLinesThatNameThem) {
+  EXPECT_EQ(run({"calibration", "maps", "2", "--to", folder_.path()}), 0);
+
+  EXPECT_EQ(out_.str(), "[detector.maps]\ndark = \"dark-2.map\"\nbad_pixels = \"bad_pixels-2.map\"\n");
+  EXPECT_EQ(test::text_of(folder_ / "dark-2.map"), "map of dark");
+  EXPECT_THAT(err_.str(), HasSubstr("next start"));
+}
+
 TEST_F(Gonioctl, ChartsACheckStandardWhateverItsName) {
   EXPECT_EQ(run({"calibration", "chart", "tile & blue 7"}), 0);
 
