@@ -13,6 +13,19 @@ TEST(LargeArray, BeginsOnAPageOfItsOwnWhereItIsLarge) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(numbers.data()) % (std::size_t{2} << 20U), 0U);
 }
 
+TEST(LargeArray, TakesPagesThatWereGivenBack) {
+  constexpr std::size_t kNumbers = (std::size_t{6} << 20U) / sizeof(double);
+  const double* before = nullptr;
+  {
+    const LargeArray<double> first(kNumbers);
+    before = first.data();
+  }
+  const LargeArray<double> second(kNumbers, 2.0);
+
+  EXPECT_EQ(second.data(), before);
+  EXPECT_EQ(second.back(), 2.0);
+}
+
 TEST(LargeArray, KeepsItsElementsThroughGrowthAndCopies) {
   LargeArray<int> grown;
   for (int n = 0; n < 1'000'000; ++n) grown.push_back(n);
