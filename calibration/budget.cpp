@@ -34,20 +34,13 @@ void merge_terms(std::vector<BudgetTerm>& terms, Add add) {
   sort_terms(terms);
   std::size_t kept = 0;
   for (std::size_t n = 0; n < terms.size(); ++n) {
-    if (kept > 0 && terms[kept - 1].component == terms[n].component) {
-      terms[kept - 1].per_sd = add(terms[kept - 1].per_sd, terms[n].per_sd);
-    } else {
-      terms[kept++] = terms[n];
+    BudgetTerm term = terms[n];
+    for (; n + 1 < terms.size() && terms[n + 1].component == term.component; ++n) {
+      term.per_sd = add(term.per_sd, terms[n + 1].per_sd);
     }
+    if (term.per_sd != Brdf{}) terms[kept++] = term;
   }
   terms.resize(kept);
-  std::erase_if(terms, [](const BudgetTerm& term) { return term.per_sd == Brdf{}; });
-}
-
-double sum_of_squares(std::span<const BudgetTerm> terms) {
-  double sum = 0.0;
-  for (const BudgetTerm& term : terms) sum += square(term.per_sd.si());
-  return sum;
 }
 
 /// What k depends on, from the squares of independent errors as they come.
@@ -80,8 +73,8 @@ class CoverageParts {
     return excess > kFelt * square(all2_);
   }
 
-  [[nodiscard]] double k() const {
-    const double student = coverage_factor(degrees_of_freedom());
+  [[nodiscard]] double k(double degrees_of_freedom) const {
+    const double student = coverage_factor(degrees_of_freedom);
     if (!are_bounds_felt()) return student;
     double rest2 = all2_ - rectangle2_;
     std::array<double, kUnknownAngles> arcsines{};
@@ -117,16 +110,22 @@ Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm
   merge_terms(shared, [](Brdf a, Brdf b) { return a + b; });
   Budget budget{.random = random, .shared = shared};
   CoverageParts parts;
-  for (const auto* terms : {&budget.random, &budget.shared}) {
-    for (const BudgetTerm& term : *terms) parts.add(components[term.component], square(term.per_sd.si()));
-  }
-  const double random2 = sum_of_squares(budget.random);
-  const double shared2 = sum_of_squares(budget.shared);
+  const auto sum_of_squares = [&](const std::vector<BudgetTerm>& terms) {
+    double sum = 0.0;
+    for (const BudgetTerm& term : terms) {
+      const double size2 = square(term.per_sd.si());
+      sum += size2;
+      parts.add(components[term.component], size2);
+    }
+    return sum;
+  };
+  const double random2 = sum_of_squares(random);
+  const double shared2 = sum_of_squares(shared);
   budget.u_random = per_steradian(std::sqrt(random2));
   budget.u_shared = per_steradian(std::sqrt(shared2));
   budget.u = per_steradian(std::sqrt(random2 + shared2));
   budget.degrees_of_freedom = parts.degrees_of_freedom();
-  budget.k = parts.k();
+  budget.k = parts.k(budget.degrees_of_freedom);
   if (parts.are_bounds_felt()) budget.method = BudgetMethod::FormulaWithBounds;
   budget.expanded = budget.k * budget.u;
   budget.below = budget.above = budget.expanded;
@@ -150,7 +149,7 @@ WeightedSum weighted_sum(std::span<const Component> components, std::span<const 
   for (const auto& [component, sum] : shared) add(component, square(sum));
   WeightedSum sum{.value = per_steradian(value), .u = per_steradian(std::sqrt(u2))};
   sum.degrees_of_freedom = parts.degrees_of_freedom();
-  sum.k = parts.k();
+  sum.k = parts.k(sum.degrees_of_freedom);
   sum.expanded = sum.k * sum.u;
   return sum;
 }

@@ -70,12 +70,14 @@ class ComponentTable {
   /// The component's index; `make` is only asked when it is new.
   template <class Make>
   std::uint32_t index(const Key& key, const Make& make) {
+    if (place_ < course_.size() && numbers_.keys()[course_[place_]] == key) return course_[place_++];
     const std::uint32_t number = numbers_.number_of(key);
     if (number == components_.size()) components_.push_back(make());
-    return number;
+    if (place_ == course_.size()) course_.push_back(number);
+    return course_[place_++] = number;
   }
-  /// The components of another point follow, likely in the order of the first one's.
-  void begin_point() { numbers_.expect(0); }
+  /// The components of another point follow, likely the last one's in the same order: then none is searched for.
+  void begin_point() { place_ = 0; }
 
   [[nodiscard]] const std::vector<Component>& components() const { return components_; }
 
@@ -92,6 +94,8 @@ class ComponentTable {
  private:
   std::vector<Component> components_;
   KeyNumbers<Key> numbers_;
+  std::vector<std::uint32_t> course_;  ///< the components of the last point as they were asked for
+  std::size_t place_ = 0;              ///< in it
 };
 
 }  // namespace gonio::calibration

@@ -101,19 +101,26 @@ DarkHistory::DarkHistory(const ScanReadings& scan, const DetectorModel& detector
 }
 
 std::optional<DarkLevel> DarkHistory::at(ExposureRung rung, Instant when) const {
+  DarkLevel level;
+  return find(rung, when, level) ? std::optional(level) : std::nullopt;
+}
+
+bool DarkHistory::find(ExposureRung rung, Instant when, DarkLevel& level) const {
   const auto found = visits_.find(rung);
-  if (found == visits_.end()) return std::nullopt;
+  if (found == visits_.end()) return false;
   const std::vector<DarkVisit>& visits = found->second;
   const auto next = visits.begin() + static_cast<std::ptrdiff_t>(first_not_before(visits, when));
   if (next != visits.begin() && next != visits.end()) {
     const DarkVisit& a = *(next - 1);
     const DarkVisit& b = *next;
     const double w = in_seconds(when - a.at) / in_seconds(b.at - a.at);
-    return DarkLevel{.level_dn = a.level_dn + w * (b.level_dn - a.level_dn),
-                     .pixel_variance_dn2 = a.pixel_variance_dn2 + w * (b.pixel_variance_dn2 - a.pixel_variance_dn2),
-                     .before = &a,
-                     .after = &b,
-                     .weight_after = w};
+    level.level_dn = a.level_dn + w * (b.level_dn - a.level_dn);
+    level.pixel_variance_dn2 = a.pixel_variance_dn2 + w * (b.pixel_variance_dn2 - a.pixel_variance_dn2);
+    level.before = &a;
+    level.after = &b;
+    level.weight_after = w;
+    level.drift_widening = 1.0;
+    return true;
   }
   const bool early = next == visits.begin();
   const DarkVisit& nearest = early ? visits.front() : visits.back();
@@ -121,12 +128,13 @@ std::optional<DarkLevel> DarkHistory::at(ExposureRung rung, Instant when) const 
   if (visits.size() > 1) {
     spacing = early ? visits[1].at - visits[0].at : visits.back().at - visits[visits.size() - 2].at;
   }
-  return DarkLevel{.level_dn = nearest.level_dn,
-                   .pixel_variance_dn2 = nearest.pixel_variance_dn2,
-                   .before = early ? nullptr : &nearest,
-                   .after = early ? &nearest : nullptr,
-                   .weight_after = early ? 1.0 : 0.0,
-                   .drift_widening = widening(early ? nearest.at - when : when - nearest.at, spacing)};
+  level = {.level_dn = nearest.level_dn,
+           .pixel_variance_dn2 = nearest.pixel_variance_dn2,
+           .before = early ? nullptr : &nearest,
+           .after = early ? &nearest : nullptr,
+           .weight_after = early ? 1.0 : 0.0,
+           .drift_widening = widening(early ? nearest.at - when : when - nearest.at, spacing)};
+  return true;
 }
 
 }  // namespace gonio::calibration

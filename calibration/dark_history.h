@@ -57,6 +57,8 @@ class DarkHistory {
   /// Linear in time between the two bracketing visits of the same rung; beyond the first or last, the nearest. Nothing
   /// when no dark was taken at this rung. The pointers live as long as this object.
   [[nodiscard]] std::optional<DarkLevel> at(ExposureRung rung, Instant when) const;
+  /// Likewise, in its place: what is copied as soon as it is written waits for its writing. False: nothing.
+  [[nodiscard]] bool find(ExposureRung rung, Instant when, DarkLevel& level) const;
   [[nodiscard]] const std::map<ExposureRung, std::vector<DarkVisit>>& visits() const { return visits_; }
 
  private:

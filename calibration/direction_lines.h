@@ -46,7 +46,11 @@ class DirectionLines {
   /// on two of the axes neighbours in the plan stand on lines far from each other.
   [[nodiscard]] const LineStop& stop_of(std::size_t n) const {
     constexpr std::size_t kAhead = 8;
-    if (n + kAhead < place_.size()) __builtin_prefetch(&stops_[place_[n + kAhead]]);
+    if (n + kAhead < place_.size()) {
+      const LineStop* const soon = &stops_[place_[n + kAhead]];
+      __builtin_prefetch(soon - 1);  // there is one; its neighbours may lie across a line of memory
+      __builtin_prefetch(soon + 2);
+    }
     return stops_[place_[n]];
   }
 

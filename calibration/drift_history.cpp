@@ -171,26 +171,31 @@ DriftLevel DriftHistory::between(std::size_t n) const {
 }
 
 std::optional<DriftLevel> DriftHistory::at(Instant when) const {
-  if (visits_.size() < 2) return std::nullopt;
+  std::optional<DriftLevel> found;
+  find(when, found);
+  return found;
+}
+
+void DriftHistory::find(Instant when, std::optional<DriftLevel>& at) const {
+  if (visits_.size() < 2) return at.reset();
   const auto next = visits_.begin() + static_cast<std::ptrdiff_t>(first_not_before(visits_, when));
   const bool is_early = next == visits_.begin();
   const bool is_late = next == visits_.end();
   const ReferenceVisit& a = is_early ? visits_.front() : *(is_late ? next - 2 : next - 1);
   const ReferenceVisit& b = is_early ? visits_[1] : *(is_late ? next - 1 : next);
-  DriftLevel found = intervals_[static_cast<std::size_t>(&a - visits_.data())];
+  DriftLevel& found = at.emplace(intervals_[static_cast<std::size_t>(&a - visits_.data())]);
   const double w = in_seconds(when - a.at) / in_seconds(b.at - a.at);
   if (is_early || is_late) {
     found.level = is_early ? a.level : b.level;
     (is_early ? found.after : found.before) = is_early ? &a : &b;
     found.weight_after = is_early ? 1.0 : 0.0;
     found.beyond = is_early ? -w : w - 1.0;
-    return found;
+    return;
   }
   found.level = a.level + w * (b.level - a.level);
   found.before = &a;
   found.after = &b;
   found.weight_after = w;
-  return found;
 }
 
 }  // namespace gonio::calibration

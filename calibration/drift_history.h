@@ -56,6 +56,8 @@ class DriftHistory {
   /// Linear in time between the two bracketing visits; beyond the first or last, the nearest. Nothing with fewer than
   /// two visits. The pointers live as long as this object.
   [[nodiscard]] std::optional<DriftLevel> at(Instant when) const;
+  /// Likewise, in its place: what is copied as soon as it is written waits for its writing.
+  void find(Instant when, std::optional<DriftLevel>& found) const;
   /// In time order.
   [[nodiscard]] const std::vector<ReferenceVisit>& visits() const { return visits_; }
 

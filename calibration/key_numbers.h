@@ -31,8 +31,6 @@ class KeyNumbers {
 
   /// By number.
   [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
-  /// The next key that is asked for is likely this one.
-  void expect(std::uint32_t number) { next_ = number; }
 
  private:
   static constexpr std::uint32_t kFree = ~std::uint32_t{0};

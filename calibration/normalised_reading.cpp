@@ -194,10 +194,13 @@ Error no_dark(const RawReading& reading, const RawFrame& frame) {
                  fmt::format("a dark visit at {} s and {} dB", frame.exposure_s, frame.gain_db));
 }
 
-// Where its darks are kept: a new entry for a rung's first frame.
-DarkShare& share_of(std::vector<DarkShare>& shares, const ExposureRung& rung, const DarkLevel& dark) {
+// Where its darks are kept: a new entry for a rung's first frame. Null: there is no dark.
+DarkShare* share_of(std::vector<DarkShare>& shares, const ExposureRung& rung, Instant when, const DarkHistory& darks) {
   const auto found = std::ranges::find(shares, rung, &DarkShare::rung);
-  return found != shares.end() ? *found : shares.emplace_back(DarkShare{.rung = rung, .level = dark});
+  if (found != shares.end()) return &*found;
+  DarkShare& share = shares.emplace_back();
+  share.rung = rung;
+  return darks.find(rung, when, share.level) ? &share : nullptr;
 }
 
 void add(FrameTerm& sum, const FrameTerm& term, double& monitor2) {
@@ -248,14 +251,16 @@ void finish(const FrameTerm& sum, double monitor2, double frames, NormalisedRead
   if (out.darks.size() > 1) std::ranges::sort(out.darks, {}, &DarkShare::rung);
 }
 
-// As new, but for the memory of its darks.
+// Of what served another reading, all that `finish` does not set.
 void begin_anew(const RawReading& reading, NormalisedReading& out) {
-  std::vector<DarkShare> darks = std::move(out.darks);
-  darks.clear();
-  out = {.has_saturated = reading.has_saturated,
-         .darks = std::move(darks),
-         .geometry = mean_geometry(reading.frames),
-         .at = reading.at};
+  out.noise_dof = std::numeric_limits<double>::infinity();
+  out.frame_chi2 = 0.0;
+  out.has_saturated = reading.has_saturated;
+  out.darks.clear();
+  out.ambient.reset();
+  out.stray.reset();
+  out.geometry = mean_geometry(reading.frames);
+  out.at = reading.at;
 }
 
 // What light acts through: of two frames of one reading the one with more saturates first.
@@ -296,15 +301,13 @@ Result<void> normalise(const RawReading& reading, const ReadingContext& context,
   FrameTerm sum;
   double monitor2 = 0.0;
   for (const RawFrame& frame : reading.frames) {
-    const ExposureRung rung = rung_of(frame);
-    const std::optional<DarkLevel> dark = context.darks->at(rung, reading.at);
-    if (!dark) return failure(no_dark(reading, frame));
-    const FrameTerm term = term_of(frame, *dark, context);
+    DarkShare* const share = share_of(out.darks, rung_of(frame), reading.at, *context.darks);
+    if (share == nullptr) return failure(no_dark(reading, frame));
+    const FrameTerm term = term_of(frame, share->level, context);
     if (reading.frames.size() > 1) terms.push_back(term);
     add(sum, term, monitor2);
-    DarkShare& share = share_of(out.darks, rung, *dark);
-    share.dq_dlevel -= term.slope;
-    share.light_share += term.light;
+    share->dq_dlevel -= term.slope;
+    share->light_share += term.light;
   }
   subtract_background(reading, context, sum, terms, out);
   finish(sum, monitor2, static_cast<double>(reading.frames.size()), out);

@@ -122,10 +122,10 @@ Result<ReferenceStandard::Place> ReferenceStandard::entry_place(Wavelength wavel
       c.entries, [&](const CertificateEntry& e) { return e.wavelength >= wavelength - kSameWavelength; });
   const auto index = static_cast<std::size_t>(above - c.entries.begin());
   if (above != c.entries.end() && above->wavelength <= wavelength + kSameWavelength) return Place{index, 0.0};
-  const std::string seen = fmt::format("wavelength {:.3f} nm", in_nanometres(wavelength));
+  const auto seen = [&] { return fmt::format("wavelength {:.3f} nm", in_nanometres(wavelength)); };
   if (above == c.entries.begin() || above == c.entries.end()) {
     return failure(out_of_reach(
-        definition_, seen,
+        definition_, seen(),
         fmt::format("the certificate covers {:.3f} to {:.3f} nm", in_nanometres(c.entries.front().wavelength),
                     in_nanometres(c.entries.back().wavelength)),
         definition_.entries_at));
@@ -134,7 +134,7 @@ Result<ReferenceStandard::Place> ReferenceStandard::entry_place(Wavelength wavel
   const Wavelength gap = above->wavelength - below.wavelength;
   if (gap > c.longest_gap) {
     return failure(out_of_reach(
-        definition_, seen,
+        definition_, seen(),
         fmt::format("between {:.3f} and {:.3f} nm the certificate has a gap longer than {:.3f} nm",
                     in_nanometres(below.wavelength), in_nanometres(above->wavelength), in_nanometres(c.longest_gap)),
         definition_.entries_at));

@@ -26,6 +26,10 @@ class ScanHistories {
   [[nodiscard]] std::optional<DriftLevel> drift_at(Instant when) const {
     return drift_ ? drift_->at(when) : std::nullopt;
   }
+  /// Likewise, in its place.
+  void find_drift(Instant when, std::optional<DriftLevel>& found) const {
+    drift_ ? drift_->find(when, found) : found.reset();
+  }
   /// In anchor mode: the standard's visits take the place of reference readings, and drift is theirs.
   [[nodiscard]] const std::optional<AnchorHistory>& anchor() const { return anchor_; }
   [[nodiscard]] ReferenceMode mode() const { return mode_; }

@@ -95,25 +95,33 @@ double ShapeTable::across(const std::vector<double>& table, const Cell& cell, st
 }
 
 double ShapeTable::value_in(const Cell& cell) const {
-  const Bracket& i = cell[0];
-  return between(across(values_, cell, 0, i.below), across(values_, cell, 0, i.below + 1), i.fraction);
+  const auto& [i, r, phi] = cell;
+  const auto at_theta_i = [&, &phi = phi, &r = r](const double* corner) {
+    const double* const next = corner + steps_[1];
+    return between(between(corner[0], corner[1], phi.fraction), between(next[0], next[1], phi.fraction), r.fraction);
+  };
+  const double* const corner = values_.data() + i.below * steps_[0] + r.below * steps_[1] + phi.below;
+  return between(at_theta_i(corner), at_theta_i(corner + steps_[0]), i.fraction);
 }
 
 double ShapeTable::value(const Geometry& g) const {
   return value_in(cell_of(place_of(g)));
 }
 
-// A step changes one bracket of the cell, but where a theta goes below zero and turns phi.
+// A step changes one bracket of the cell, but where a theta goes below zero and turns phi; a theta that does not is its
+// own place.
 ShapeRises ShapeTable::rises(const Geometry& g, const ShapeSteps& steps) const {
   const Cell cell = cell_of(place_of(g));
   const bool is_off_pole = steps[0][0] >= Angle{} && steps[1][0] >= Angle{};
-  const auto moved = [&](std::size_t axis, Angle to) {
+  const auto place_at = [&](std::size_t axis, Angle to) {
     Geometry at = g;
     (axis == 0 ? at.theta_i : axis == 1 ? at.theta_r : at.phi_r) = to;
-    const Place place = place_of(at);
-    if (!is_off_pole) return value_in(cell_of(place));
+    return place_of(at);
+  };
+  const auto moved = [&](std::size_t axis, Angle to) {
+    if (!is_off_pole) return value_in(cell_of(place_at(axis, to)));
     Cell next = cell;
-    next[axis] = finders_[axis].bracket(grid(axis), place[axis]);
+    next[axis] = finders_[axis].bracket(grid(axis), axis == 2 ? place_at(axis, to)[axis] : to);
     return value_in(next);
   };
   ShapeRises rises{};
