@@ -85,6 +85,7 @@ class AltaReader {
         GONIO_TRY(read_row(*line));
       }
     }
+    GONIO_TRY(lines_.check_end());
     if (input_ == nullptr) return failure(lines_.error("PARAM_IN", "the line is absent", "required"));
     if (dropped_ > 0)
       brdf_.metadata.remarks.emplace_back(

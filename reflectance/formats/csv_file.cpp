@@ -52,7 +52,7 @@ class CsvReader {
   Result<MeasuredBrdf> read() {
     GONIO_TRY(read_names());
     while (const std::optional<std::string_view> line = lines_.next_filled()) GONIO_TRY(read_row(*line));
-    if (!lines_.line_was_ended()) return failure(lines_.error("", "the last line has no end", "a whole file"));
+    GONIO_TRY(lines_.check_end());
     if (sidecar_ != nullptr && brdf_.points.size() != sidecar_->points)
       return failure(lines_.error("", fmt::format("{} points", brdf_.points.size()),
                                   fmt::format("{}, as its sidecar says", sidecar_->points)));

@@ -42,6 +42,12 @@ std::optional<std::string_view> TextLines::next_filled(std::string_view comment_
   return std::nullopt;
 }
 
+Result<void> TextLines::check_end() const {
+  if (ended_) return {};
+  return failure(error("", "the last line has no end, as if the file were cut off",
+                       "a whole file; if it is one, end it with a new line"));
+}
+
 Error TextLines::error(std::string field, std::string seen, std::string limit) const {
   return {.code = ErrorCode::InvalidInput,
           .tried = "read it as " + format_,

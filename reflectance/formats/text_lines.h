@@ -26,8 +26,9 @@ class TextLines {
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() - at_; }
   /// What follows the line that was read last: binary data behind a header of text.
   [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
-  /// Whether the line that was read last had its end: a text cut off in a number does not.
-  [[nodiscard]] bool line_was_ended() const { return ended_; }
+  /// That the line that was read last had its end. A text that was cut off in a number has none, and a shorter number
+  /// there would be read as a value. Errors: InvalidInput.
+  [[nodiscard]] Result<void> check_end() const;
   [[nodiscard]] const std::string& file() const { return file_; }
 
   /// InvalidInput at the line that was read last.
