@@ -20,6 +20,7 @@ namespace gonio::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr std::uint64_t kSeed = 20261123;
 constexpr int kSide = 64;
@@ -62,6 +63,28 @@ repeats = 6
 target_snr = 1000
 max_time_s = 0.0256
 exposure_s = [4e-4]
+[reference]
+standard = "SRT-99-020"
+block_s = 20
+[visits]
+dark_s = 10
+)";
+
+// The darks alone count: one lit reading is enough.
+constexpr const char* kDarkMap = R"([scan]
+name = "darks"
+sample = "black card"
+[calibration]
+job = "dark-map"
+frames = 16
+[geometry]
+theta_i_deg = [0]
+theta_r_deg = [45]
+phi_r_deg = [90]
+wavelength_nm = [568]
+[reading]
+target_snr = 100
+max_time_s = 0.0128
 [reference]
 standard = "SRT-99-020"
 block_s = 20
@@ -180,6 +203,9 @@ class DetectorMapsScenario : public testing::Test {
     EXPECT_TRUE(client.wait_for(has_some, kStepDeadline)) << bench_.log();
     bench_.bring_up_daemon();
     EXPECT_EQ(bench_.wait_for_state(scan, {"done", "failed", "aborted", "holding"}), "done") << bench_.log();
+    return found_by(scan);
+  }
+  nlohmann::json found_by(long scan) {
     nlohmann::json found;
     const auto is_there = [&] {
       const nlohmann::json list = bench_.get("calibrations");
@@ -247,6 +273,43 @@ TEST_F(DetectorMapsScenario, FoundByAJobTheyTakeOutOfAScanWhatItsPixelsPutIn) {
       "measured / true: %.4f without maps (%.4f expected of %.0f bad pixels in %.0f), %.4f with them; flat's "
       "chi-square %.2f\n",
       ratio_of(before), expected, truth_.bad, truth_.pixels, after, chi_square);
+}
+
+// Offset 64 DN and 8 DN/s of scene time, 40 times as much of wall time; each pixel the same, and 1.5 DN of noise.
+TEST_F(DetectorMapsScenario, ADarkMapIsThatOfTheCameraAndComesAgainFromItsTape) {
+  bench_.record_to(bench_.folder() + "/night.tape");
+  bench_.bring_up_daemon();
+  const long scan = run(kDarkMap);
+  const nlohmann::json version = found_by(scan);
+  ASSERT_FALSE(version.is_null());
+  const std::string number = std::to_string(version.at("version").get<long>());
+  const Finished written = bench_.gonioctl({"calibration", "maps", number, "--to", bench_.folder()});
+  ASSERT_EQ(written.exit_code, 0) << written.errors << bench_.log();
+  EXPECT_THAT(written.output, Not(HasSubstr("flat")));
+  EXPECT_EQ(bench_.end_daemon(), 0);
+
+  const std::string dark = bytes_of(bench_.folder() + "/dark-" + number + ".map");
+  ASSERT_EQ(dark.size(), 64U + 2U * 4U * kSide * kSide) << "offset and rate";
+  double chi_square = 0.0;
+  double rate_chi_square = 0.0;
+  for (const auto& [pixel, response] : truth_.good_at) {
+    const std::size_t at = 64U + 4U * static_cast<std::size_t>(pixel);
+    const double offset = static_cast<double>(number_at<float>(dark, at));
+    const double rate = static_cast<double>(number_at<float>(dark, at + 4U * kSide * kSide));
+    chi_square += std::pow((offset - 64.0) / number_at<double>(dark, 24), 2);
+    rate_chi_square += std::pow((rate - 320.0) / number_at<double>(dark, 32), 2);
+  }
+  const auto n = static_cast<double>(truth_.good_at.size());
+  EXPECT_NEAR(chi_square / n, 1.0, 0.3) << "430 pixels: four standard deviations of it are 0.27";
+  EXPECT_NEAR(rate_chi_square / n, 1.0, 0.3);
+  EXPECT_EQ(value_of(version, "bad_pixels"), 0.0) << "in the dark they are as good as the others";
+
+  const Finished again = run_program({kGonioctl, "replay", bench_.folder() + "/night.tape", "--store",
+                                      bench_.folder() + "/again.sqlite", "--against", bench_.files().store},
+                                     bench_.folder(), kScanDeadline);
+  EXPECT_EQ(again.exit_code, 0) << again.output << again.errors;
+  SQLite::Database store(bench_.folder() + "/again.sqlite", SQLite::OPEN_READONLY);
+  EXPECT_GT(store.execAndGet("SELECT count(*) FROM pixel_sum").getInt(), 0);
 }
 
 }  // namespace

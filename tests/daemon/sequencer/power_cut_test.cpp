@@ -173,6 +173,7 @@ TEST_F(PowerCut, LeavesAMapJobTheSumsOfWholeReadings) {
     constexpr std::uint64_t kLastOperation = 60;
     disk.cut_at(disk.operations() + std::uniform_int_distribution<std::uint64_t>(1, kLastOperation)(chance));
     run_until_cut(rig, disk);
+    ASSERT_TRUE(disk.is_cut());
     disk.restore(chance());
     EXPECT_FALSE(damage_of(rig.store_path(), rig.events).any());
     rig.start();
