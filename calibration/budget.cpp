@@ -30,17 +30,15 @@ void sort_terms(std::vector<BudgetTerm>& terms) {
 }
 
 template <class Add>
-void merge_terms(std::vector<BudgetTerm>& terms, Add add) {
+void merge_terms(std::vector<BudgetTerm>& terms, Add add, TermColumns& made) {
   sort_terms(terms);
-  std::size_t kept = 0;
   for (std::size_t n = 0; n < terms.size(); ++n) {
     BudgetTerm term = terms[n];
     for (; n + 1 < terms.size() && terms[n + 1].component == term.component; ++n) {
       term.per_sd = add(term.per_sd, terms[n + 1].per_sd);
     }
-    if (term.per_sd != Brdf{}) terms[kept++] = term;
+    if (term.per_sd != Brdf{}) made.add(term);
   }
-  terms.resize(kept);
 }
 
 /// What k depends on, from the squares of independent errors as they come.
@@ -105,22 +103,26 @@ double coverage_factor(double degrees_of_freedom) {
 }
 
 Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm>& random,
-                   std::vector<BudgetTerm>& shared) {
-  merge_terms(random, [](Brdf a, Brdf b) { return Brdf::from_si(std::hypot(a.si(), b.si())); });
-  merge_terms(shared, [](Brdf a, Brdf b) { return a + b; });
-  Budget budget{.random = random, .shared = shared};
+                   std::vector<BudgetTerm>& shared, TermColumns& made) {
+  made.begin(random.size() + shared.size());
+  merge_terms(
+      random, [](Brdf a, Brdf b) { return Brdf::from_si(std::hypot(a.si(), b.si())); }, made);
+  const std::size_t randoms = made.size();
+  merge_terms(
+      shared, [](Brdf a, Brdf b) { return a + b; }, made);
+  Budget budget{.random = made.terms(0, randoms), .shared = made.terms(randoms, made.size())};
   CoverageParts parts;
-  const auto sum_of_squares = [&](const std::vector<BudgetTerm>& terms) {
+  const auto sum_of_squares = [&](const BudgetTerms& terms) {
     double sum = 0.0;
-    for (const BudgetTerm& term : terms) {
+    for (const BudgetTerm term : terms) {
       const double size2 = square(term.per_sd.si());
       sum += size2;
       parts.add(components[term.component], size2);
     }
     return sum;
   };
-  const double random2 = sum_of_squares(random);
-  const double shared2 = sum_of_squares(shared);
+  const double random2 = sum_of_squares(budget.random);
+  const double shared2 = sum_of_squares(budget.shared);
   budget.u_random = per_steradian(std::sqrt(random2));
   budget.u_shared = per_steradian(std::sqrt(shared2));
   budget.u = per_steradian(std::sqrt(random2 + shared2));

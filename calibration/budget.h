@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/units.h"
+#include "calibration/budget_terms.h"
 
 namespace gonio::calibration {
 
@@ -48,18 +49,11 @@ struct Component {
   bool is_of_the_wander = false;
 };
 
-/// What one standard deviation of a component does to a value. Absolute, in sr^-1, for the value may be 0 or negative.
-struct BudgetTerm {
-  std::uint32_t component = 0;  ///< index into the scan's table of components
-  Brdf per_sd;                  ///< signed for shared components, >= 0 for random ones
-  friend bool operator==(const BudgetTerm&, const BudgetTerm&) = default;
-};
-
-/// The uncertainty of one value. Terms of the same component never come twice. Both lists live as long as those that
-/// the budget was made from: of a scan's point, as long as the scan or a copy of it.
+/// The uncertainty of one value. Terms of the same component never come twice. Both lists live as long as the columns
+/// that the budget was made in: of a scan's point, as long as the scan or a copy of it.
 struct Budget {
-  std::span<const BudgetTerm> random;
-  std::span<const BudgetTerm> shared;
+  BudgetTerms random;
+  BudgetTerms shared;
   Brdf u_random;  ///< root sum of squares of `random`
   Brdf u_shared;  ///< root sum of squares of `shared`: components are independent of each other
   Brdf u;         ///< combined standard uncertainty u_c
@@ -75,9 +69,9 @@ struct Budget {
 
 /// Sorts the terms, merges those of one component (random: root sum of squares; shared: signed sum), leaves out those
 /// that are 0, and adds all up: u_c, the effective degrees of freedom (JCGM 100:2008, eq G.2b, over estimates that are
-/// independent), k and U. Both lists are left sorted and merged: the budget's own.
+/// independent), k and U. Both lists are left sorted; what is made of them goes to `made`, the budget's own.
 [[nodiscard]] Budget make_budget(std::span<const Component> components, std::vector<BudgetTerm>& random,
-                                 std::vector<BudgetTerm>& shared);
+                                 std::vector<BudgetTerm>& shared, TermColumns& made);
 
 /// k for a level of confidence of 95.45 %: Student's t at p = 0.9545 for `degrees_of_freedom` > 0 (JCGM 100:2008, table
 /// G.2; it need not be whole), 2.000 for infinity.

@@ -249,7 +249,7 @@ class BlockFinisher {
                 ComponentTable& table)
       : shop_(shop), around_(around), draft_(draft), block_(block), context_(shop.equation()), terms_(table) {}
 
-  CalibratedPoint finish(std::size_t k, TermStore& store) {
+  void finish(std::size_t k, TermStore& store, CalibratedPoint& point) {
     const std::size_t n = block_.first + k;
     call_readings(draft_.pairs, block_.of_plan[k]);
     equate_again(k);
@@ -259,12 +259,10 @@ class BlockFinisher {
     terms_.clear();
     const SpectralSlope spectral = around_.spectral.empty() ? SpectralSlope{} : around_.spectral[n];
     shop_.rules.add_terms(pair_, slopes, cones, spectral, terms_);
-    CalibratedPoint point = point_of(k);
+    begin_point(k, point);
     point.budget = budget_of(n, slopes);
     point.flags = flags_of(pair_, point.budget, slopes, cones, terms_, readings(k).is_borrowed);
-    point.budget.random = store.keep(point.budget.random);
-    point.budget.shared = store.keep(point.budget.shared);
-    return point;
+    store.keep(point.budget);
   }
 
  private:
@@ -279,14 +277,13 @@ class BlockFinisher {
     add_standard_slopes(context_, pair_);
   }
 
-  [[nodiscard]] CalibratedPoint point_of(std::size_t k) const {
-    return {.point_index = shop_.scan.points[block_.of_plan[k]].index,
-            .geometry = pair_.sample.geometry,
-            .wavelength = pair_.wavelength,
-            .value = per_steradian(pair_.value),
-            .budget = {},
-            .sample_reading = readings(k).sample->id,
-            .reference_reading = pair_.reference_id};
+  void begin_point(std::size_t k, CalibratedPoint& point) const {
+    point.point_index = shop_.scan.points[block_.of_plan[k]].index;
+    point.geometry = pair_.sample.geometry;
+    point.wavelength = pair_.wavelength;
+    point.value = per_steradian(pair_.value);
+    point.sample_reading = readings(k).sample->id;
+    point.reference_reading = pair_.reference_id;
   }
 
   Budget budget_of(std::size_t n, const DirectionSlopes& slopes) {
@@ -317,7 +314,7 @@ void finish_block(const Neighbourhoods& around, const Workshop& shop, const Draf
   store = TermStore(points.size());
   BlockFinisher finisher(shop, around, draft, block, table);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    points[k] = finisher.finish(k, store);
+    finisher.finish(k, store, points[k]);
     block.tally.add(points[k]);
   }
   block.kept = {};

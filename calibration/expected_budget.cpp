@@ -63,13 +63,13 @@ Result<void> expect_beam(PairedPoint& pair, const InstrumentModel& instrument) {
 }
 
 std::string largest(const Budget& budget, const ComponentTable& table) {
-  const BudgetTerm* most = nullptr;
+  std::optional<BudgetTerm> most;
   for (const auto* terms : {&budget.random, &budget.shared}) {
     for (const BudgetTerm& term : *terms) {
-      if (most == nullptr || std::abs(term.per_sd.si()) > std::abs(most->per_sd.si())) most = &term;
+      if (!most || std::abs(term.per_sd.si()) > std::abs(most->per_sd.si())) most = term;
     }
   }
-  return most == nullptr ? std::string() : table.components()[most->component].name;
+  return most ? table.components()[most->component].name : std::string();
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ class TermList {
   [[nodiscard]] const std::vector<Component>& components() const { return table_.components(); }
 
   /// Sorts and merges the terms (make_budget). It refers to them: until the next change of this list.
-  [[nodiscard]] Budget budget() { return make_budget(table_.components(), random_, shared_); }
+  [[nodiscard]] Budget budget() { return make_budget(table_.components(), random_, shared_, made_); }
 
  private:
   template <class Name>
@@ -99,6 +99,7 @@ class TermList {
   std::vector<BudgetTerm> random_;
   std::vector<BudgetTerm> shared_;
   std::vector<DivisorTerm> divisor_;
+  TermColumns made_;
 };
 
 }  // namespace gonio::calibration

@@ -12,8 +12,8 @@
 namespace gonio::calibration {
 
 /// The terms of many points' budgets, list after list in large pieces of memory: two lists of its own for each of a
-/// million points would cost two million allocations. What it keeps stays where it is, also when the store is moved.
-/// Threads: one.
+/// million points would cost two million allocations. Points that follow each other mostly have the same components:
+/// those stand there once. What it keeps stays where it is, also when the store is moved. Threads: one.
 class TermStore {
  public:
   TermStore() = default;
@@ -22,27 +22,46 @@ class TermStore {
   TermStore(TermStore&&) = default;
   TermStore& operator=(TermStore&&) = default;
 
-  [[nodiscard]] std::span<const BudgetTerm> keep(std::span<const BudgetTerm> terms) {
-    if (pieces_.empty() || pieces_.back().capacity() - pieces_.back().size() < terms.size()) {
-      pieces_.emplace_back().reserve(std::max(terms.size(), piece_));
-    }
-    LargeArray<BudgetTerm>& piece = pieces_.back();
-    piece.insert(piece.end(), terms.begin(), terms.end());
-    return std::span<const BudgetTerm>(piece).last(terms.size());
+  /// Takes over the budget's terms, both lists one behind the other (make_budget): it refers to the store then.
+  void keep(Budget& budget) {
+    const std::size_t randoms = budget.random.size();
+    const std::size_t all = randoms + budget.shared.size();
+    const std::span components(budget.random.components(), all);
+    if (!std::ranges::equal(components, last_components_))
+      last_components_ = kept(components, kComponentsOfAPiece, components_);
+    const auto per_sds = kept(std::span(budget.random.per_sds(), all), piece_, per_sds_);
+    budget.random = {last_components_.data(), per_sds.data(), randoms};
+    budget.shared = {last_components_.data() + randoms, per_sds.data() + randoms, all - randoms};
   }
 
   /// Component n of every list becomes numbers[n].
   void renumber(std::span<const std::uint32_t> numbers) {
-    for (LargeArray<BudgetTerm>& piece : pieces_) {
-      for (BudgetTerm& term : piece) term.component = numbers[term.component];
+    for (LargeArray<std::uint32_t>& piece : components_) {
+      for (std::uint32_t& component : piece) component = numbers[component];
     }
   }
 
  private:
   static constexpr std::size_t kTermsOfAPoint = 32;
+  static constexpr std::size_t kComponentsOfAPiece = 4096;
+
+  template <class T>
+  using Pieces = std::vector<LargeArray<T>>;
+
+  template <class T>
+  static std::span<const T> kept(std::span<const T> list, std::size_t piece, Pieces<T>& pieces) {
+    if (pieces.empty() || pieces.back().capacity() - pieces.back().size() < list.size()) {
+      pieces.emplace_back().reserve(std::max(list.size(), piece));
+    }
+    LargeArray<T>& last = pieces.back();
+    last.insert(last.end(), list.begin(), list.end());
+    return std::span<const T>(last).last(list.size());
+  }
 
   std::size_t piece_ = kTermsOfAPoint;
-  std::vector<LargeArray<BudgetTerm>> pieces_;
+  Pieces<std::uint32_t> components_;
+  Pieces<Brdf> per_sds_;
+  std::span<const std::uint32_t> last_components_;
 };
 
 }  // namespace gonio::calibration

@@ -16,13 +16,12 @@ Brdf f(double value) {
   return per_steradian(value);
 }
 
-/// A budget with the lists that it refers to.
+/// A budget with the columns that it refers to.
 struct Made {
-  std::vector<BudgetTerm> random;
-  std::vector<BudgetTerm> shared;
+  TermColumns columns;
   Budget budget;
-  Made(const std::vector<Component>& components, std::vector<BudgetTerm> of_random, std::vector<BudgetTerm> of_shared)
-      : random(std::move(of_random)), shared(std::move(of_shared)), budget(make_budget(components, random, shared)) {}
+  Made(const std::vector<Component>& components, std::vector<BudgetTerm> random, std::vector<BudgetTerm> shared)
+      : budget(make_budget(components, random, shared, columns)) {}
 };
 
 // JCGM 100:2008, table G.2, column 95.45 %.
@@ -136,15 +135,13 @@ TEST(Budget, PartsOfOneEstimateHaveItsDegreesOfFreedomTogether) {
   part.is_of_the_wander = true;
   const std::vector<Component> one = {whole};
   const std::vector<Component> parts(4, part);
-  std::vector<BudgetTerm> none;
   std::vector<BudgetTerm> halves;
   for (std::uint32_t k = 0; k < 4; ++k) halves.push_back({k, per_steradian(0.5)});
-  std::vector<BudgetTerm> once = {{0, per_steradian(1.0)}};
 
-  const Budget together = make_budget(parts, none, halves);
+  const Made together(parts, {}, halves);
 
-  EXPECT_NEAR(together.degrees_of_freedom, 8.0, 1e-12);
-  EXPECT_NEAR(together.k, make_budget(one, none, once).k, 1e-12);
+  EXPECT_NEAR(together.budget.degrees_of_freedom, 8.0, 1e-12);
+  EXPECT_NEAR(together.budget.k, Made(one, {}, {{0, per_steradian(1.0)}}).budget.k, 1e-12);
 }
 
 }  // namespace
