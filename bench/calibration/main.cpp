@@ -4,6 +4,7 @@
 //   FOLDER: where the store is written, some 1.3 kB a point; /tmp otherwise
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -44,18 +45,27 @@ CalibratedScan reduced(const ScanReadings& scan, const Inputs& with, int threads
   std::exit(2);
 }
 
+// Calls work(first, last) for all points, in blocks, on all threads.
+void for_points(std::size_t points, const std::function<void(std::size_t, std::size_t)>& work) {
+  constexpr std::size_t kPointsAtOnce = 4096;
+  for_blocks((points + kPointsAtOnce - 1) / kPointsAtOnce, 0,
+             [&](std::size_t block) { work(block * kPointsAtOnce, std::min(points, (block + 1) * kPointsAtOnce)); });
+}
+
+// As a reduction does: once for the value, and once more with what the budget needs beside it.
 void equate_all(const ScanReadings& scan, const Inputs& with, const std::vector<ReadingPair>& pairs,
                 const ScanHistories& histories) {
-  constexpr std::size_t kPointsAtOnce = 4096;
   const EquationContext context{
       .histories = &histories, .instrument = &with.instrument, .standard = &with.standard, .left_out = {}};
-  for_blocks(pairs.size() / kPointsAtOnce, 0, [&](std::size_t block) {
-    PairedPoint pair;
-    for (std::size_t n = block * kPointsAtOnce; n < (block + 1) * kPointsAtOnce; ++n) {
-      if (!equate(scan.points[n], pairs[n], context, pair)) std::exit(2);
-      add_standard_slopes(context, pair);
-    }
-  });
+  for (const bool has_slopes : {false, true}) {
+    for_points(pairs.size(), [&](std::size_t first, std::size_t last) {
+      PairedPoint pair;
+      for (std::size_t n = first; n < last; ++n) {
+        if (!equate(scan.points[n], pairs[n], context, pair)) std::exit(2);
+        if (has_slopes) add_standard_slopes(context, pair);
+      }
+    });
+  }
 }
 
 std::vector<SlopePoint> places_of(const ScanReadings& scan, const CalibratedScan& calibrated) {
@@ -89,13 +99,12 @@ void time_steps(const ScanReadings& scan, const Inputs& with, const CalibratedSc
   add(0, "pairs", [&] { pairs = pair_readings(scan); });
   add(1, "histories", [&] { const ScanHistories all(scan, with.instrument, {}); });
   const ScanHistories histories(scan, with.instrument, {});
-  add(2, "equation", [&] { equate_all(scan, with, pairs, histories); });
+  add(2, "equation, twice", [&] { equate_all(scan, with, pairs, histories); });
   const std::vector<SlopePoint> places = places_of(scan, calibrated);
   add(3, "lines and slopes", [&] {
     const SlopeField field(places, true, 0);
-    constexpr std::size_t kPointsAtOnce = 4096;
-    for_blocks(places.size() / kPointsAtOnce, 0, [&](std::size_t block) {
-      for (std::size_t n = block * kPointsAtOnce; n < (block + 1) * kPointsAtOnce; ++n) (void)field.at(n);
+    for_points(places.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) (void)field.at(n);
     });
   });
 }
@@ -130,6 +139,7 @@ bool bench_memory(const ScanReadings& scan, const Inputs& with, int rounds) {
   const auto points = static_cast<int>(scan.points.size());
   fmt::print("from memory: {} points, {} terms each, {} rounds, medians\n", points, terms, rounds);
   print("all threads", all, points, 0.0);
+  print("all threads, first round", whole.front(), points, 0.0);  // into fresh pages, which the system clears
   print("one thread (one round)", bench::median(single), points, 0.0);
   MeasuredTime rest = all;
   for (const Step& step : steps) {
