@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -47,9 +48,10 @@ class DirectionLines {
   [[nodiscard]] const LineStop& stop_of(std::size_t n) const {
     constexpr std::size_t kAhead = 8;
     if (n + kAhead < place_.size()) {
-      const LineStop* const soon = &stops_[place_[n + kAhead]];
-      __builtin_prefetch(soon - 1);  // there is one; its neighbours may lie across a line of memory
-      __builtin_prefetch(soon + 2);
+      const std::uint32_t soon = place_[n + kAhead];
+      constexpr std::uint32_t kNeighbours = 2;  // on either side: they may lie across a line of memory
+      __builtin_prefetch(&stops_[soon - std::min(soon, kNeighbours)]);
+      __builtin_prefetch(stops_.data() + std::min<std::size_t>(soon + kNeighbours, stops_.size() - 1));
     }
     return stops_[place_[n]];
   }
