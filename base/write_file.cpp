@@ -38,24 +38,61 @@ void sync_folder_of(const std::string& path) {
   close(fd);
 }
 
+std::string aside_of(const std::string& path) {
+  return path + ".part-" + std::to_string(getpid());
+}
+
+// Durable beside `path`. 0, or errno; then nothing is left of it.
+int write_aside(const std::string& path, std::string_view bytes) {
+  constexpr mode_t kMode = 0644;
+  const std::string aside = aside_of(path);
+  const int fd = open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+  if (fd < 0) return errno;
+  int reason = write_all_durably(fd, bytes);
+  if (close(fd) != 0 && reason == 0) reason = errno;
+  if (reason != 0) unlink(aside.c_str());
+  return reason;
+}
+
+// 0, or errno; then what stands aside is gone.
+int take_place(const std::string& path, const std::string& keep_old_as) {
+  const std::string aside = aside_of(path);
+  int reason = 0;
+  // A second name for the old text: the file itself is never gone.
+  if (!keep_old_as.empty() && link(path.c_str(), keep_old_as.c_str()) != 0) reason = errno;
+  if (reason == 0 && rename(aside.c_str(), path.c_str()) != 0) reason = errno;
+  if (reason == 0) sync_folder_of(path);
+  if (reason != 0) unlink(aside.c_str());
+  return reason;
+}
+
+void drop_asides(const std::vector<FileToWrite>& files) {
+  for (const FileToWrite& file : files) unlink(aside_of(file.path).c_str());
+}
+
 }  // namespace
 
 Result<void> write_file(const std::string& path, std::string_view bytes, const std::string& keep_old_as) {
-  const std::string aside = path + ".part-" + std::to_string(getpid());
-  constexpr mode_t kMode = 0644;
-  const int fd = open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
-  if (fd < 0) return failure(unwritten_file(path, errno));
-  int reason = write_all_durably(fd, bytes);
-  if (close(fd) != 0 && reason == 0) reason = errno;
-  // A second name for the old text: the file itself is never gone.
-  if (reason == 0 && !keep_old_as.empty() && link(path.c_str(), keep_old_as.c_str()) != 0) reason = errno;
-  if (reason == 0 && rename(aside.c_str(), path.c_str()) != 0) reason = errno;
-  if (reason == 0) {
-    sync_folder_of(path);
-    return {};
-  }
-  unlink(aside.c_str());
+  int reason = write_aside(path, bytes);
+  if (reason == 0) reason = take_place(path, keep_old_as);
+  if (reason == 0) return {};
   return failure(unwritten_file(path, reason));
+}
+
+Result<void> write_files(const std::vector<FileToWrite>& files) {
+  for (const FileToWrite& file : files) {
+    const int reason = std::filesystem::is_directory(file.path) ? EISDIR : write_aside(file.path, file.bytes);
+    if (reason == 0) continue;
+    drop_asides(files);
+    return failure(unwritten_file(file.path, reason));
+  }
+  for (const FileToWrite& file : files) {
+    const int reason = take_place(file.path, {});
+    if (reason == 0) continue;
+    drop_asides(files);
+    return failure(unwritten_file(file.path, reason));
+  }
+  return {};
 }
 
 }  // namespace gonio

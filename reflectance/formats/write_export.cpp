@@ -5,8 +5,9 @@
 namespace gonio::formats {
 
 Result<void> write_export(const std::string& stem, const Export& written) {
-  for (const OutputFile& file : written.files) GONIO_TRY(write_file(stem + file.suffix, file.bytes));
-  return {};
+  std::vector<FileToWrite> files;
+  for (const OutputFile& file : written.files) files.push_back({.path = stem + file.suffix, .bytes = file.bytes});
+  return write_files(files);
 }
 
 }  // namespace gonio::formats

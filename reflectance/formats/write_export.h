@@ -7,8 +7,8 @@
 
 namespace gonio::formats {
 
-/// All files of an export beside each other, each whole or not at all (base/write_file.h); the first to fail ends it,
-/// and those written before stay. Errors: DiskFull, InvalidInput.
+/// All files of an export beside each other: all of them, or none and what was there before (base/write_file.h,
+/// write_files). Errors: those of write_files.
 [[nodiscard]] Result<void> write_export(const std::string& stem, const Export& written);
 
 }  // namespace gonio::formats
