@@ -102,6 +102,7 @@ class AltaReader {
     if (key == "PARAM_OUT") return read_output(rest);
     if (key == "DIM") return read_dimensions(rest);
     if (key == "VS") return read_segments(rest);
+    if (key == "FORMAT") return read_kind(rest);
     if (key == "SAMPLE") {
       brdf_.metadata.sample = rest.size() >= 2 && rest.starts_with('"') ? rest.substr(1, rest.size() - 2) : rest;
     } else if (!key.empty() && !rest.empty() && key != "ALTA") {
@@ -119,6 +120,12 @@ class AltaReader {
     std::string known;
     for (const AltaInput& input : kAltaInputs) known.append(known.empty() ? "" : ", ").append(input.name);
     return failure(lines_.error("PARAM_IN", fmt::format("'{}'", name.substr(0, 40)), known));
+  }
+
+  // The library writes numbers in binary, too.
+  Result<void> read_kind(std::string_view kind) {
+    if (kind == "text" || kind == "TEXT") return {};
+    return failure(lines_.error("FORMAT", fmt::format("'{}'", one_line(kind.substr(0, 40))), "text"));
   }
 
   Result<void> read_output(std::string_view name) {

@@ -49,6 +49,17 @@ Channel astm_channel(std::string_view name, const TextLines& lines) {
   return channel;
 }
 
+// Between commas; some write blanks.
+std::vector<std::string_view> cells_of(std::string_view line) {
+  return line.find(',') == std::string_view::npos ? words(line) : split(line, ',');
+}
+
+// The standard's scattered direction is called reflected by some.
+bool is_angle_name(std::string_view name, std::size_t place) {
+  constexpr std::array<std::string_view, 4> kReflected{"theta_i", "phi_i", "theta_r", "phi_r"};
+  return name == kAstmAngles[place] || name == kReflected[place];
+}
+
 class AstmReader {
  public:
   AstmReader(std::string_view text, const std::string& file) : lines_(text, "ASTM text", file) {}
@@ -61,6 +72,7 @@ class AstmReader {
       GONIO_TRY(read_row(*line));
       ++rows;
     }
+    GONIO_TRY(lines_.check_end());
     if (points_ && rows != *points_)
       return failure(lines_.error("NUM_POINTS", fmt::format("{} lines", rows), fmt::format("{}", *points_)));
     GONIO_TRY(check(brdf_, lines_.file()));
@@ -100,11 +112,11 @@ class AstmReader {
   }
 
   Result<void> read_names(std::string_view rest) {
-    const std::vector<std::string_view> names = split(rest, ',');
+    const std::vector<std::string_view> names = cells_of(rest);
     if (names.size() <= kAstmAngles.size())
       return failure(lines_.error("VARS", fmt::format("{} columns", names.size()), "four angles and a value"));
     for (std::size_t n = 0; n < kAstmAngles.size(); ++n) {
-      if (trimmed(names[n]) != kAstmAngles[n])
+      if (!is_angle_name(trimmed(names[n]), n))
         return failure(lines_.error("VARS", fmt::format("column {} is '{}'", n + 1, names[n].substr(0, 40)),
                                     std::string(kAstmAngles[n])));
     }
@@ -114,7 +126,7 @@ class AstmReader {
   }
 
   Result<void> read_row(std::string_view line) {
-    const std::vector<std::string_view> cells = split(line, ',');
+    const std::vector<std::string_view> cells = cells_of(line);
     const std::size_t wanted = kAstmAngles.size() + brdf_.channels.size();
     if (cells.size() != wanted)
       return failure(lines_.error("", fmt::format("{} cells", cells.size()), fmt::format("{}", wanted)));

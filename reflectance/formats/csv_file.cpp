@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "reflectance/formats/csv_names.h"
 #include "reflectance/formats/sidecar_json.h"
 #include "reflectance/formats/text_lines.h"
 
@@ -63,17 +64,12 @@ class CsvReader {
 
  private:
   Result<void> read_names() {
-    const std::optional<std::string_view> line = lines_.next_filled();
+    std::optional<std::string_view> line = lines_.next_filled();
+    if (line && is_separator_line(*line)) line = lines_.next_filled();
     if (!line) return failure(lines_.error("", "an empty file", "a row of column names"));
-    for (const std::string_view cell : split(*line, ',')) {
-      const std::string name(trimmed(cell));
-      const bool is_known =
-          name == kChannelColumn || name == kWavelengthColumn || name == kFlagsColumn ||
-          std::ranges::any_of(kNumberColumns, [&](const NumberColumn& column) { return column.name == name; });
-      if (!is_known) return failure(lines_.error(one_line(name.substr(0, 40)), "an unknown column"));
-      if (std::ranges::count(names_, name) > 0) return failure(lines_.error(name, "the column stands twice"));
-      names_.push_back(name);
-    }
+    separator_ = csv_separator(*line);
+    is_closed_ = line->ends_with(separator_);
+    for (const std::string_view cell : cells_of(*line)) GONIO_TRY(read_name(unquoted(cell)));
     for (const NumberColumn& column : kNumberColumns) {
       if (column.is_needed && std::ranges::count(names_, column.name) == 0)
         return failure(lines_.error(std::string(column.name), "the column is absent", "required"));
@@ -82,37 +78,69 @@ class CsvReader {
     return failure(lines_.error(std::string(kChannelColumn), "the column is absent", "required beside a sidecar"));
   }
 
+  Result<void> read_name(std::string_view said) {
+    const std::optional<CsvColumn> column = csv_column(said);
+    const std::string shown = one_line(said.substr(0, 40));
+    if (!column)
+      return failure(lines_.error(shown, "an unknown column",
+                                  "theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, f_per_sr, U_per_sr, k, "
+                                  "u_shared_per_sr, channel, wavelength_nm, flags"));
+    if (!column->factor)
+      return failure(lines_.error(shown, "a column without its unit", column->name + ", or another unit in brackets"));
+    if (std::ranges::count(names_, column->name) > 0) return failure(lines_.error(shown, "the column stands twice"));
+    names_.push_back(column->name);
+    factors_.push_back(*column->factor);
+    return {};
+  }
+
+  // Spreadsheets close rows with one more separator; then the names have one, too. Tabs at a row's end are blanks.
+  std::vector<std::string_view> cells_of(std::string_view line) const {
+    std::vector<std::string_view> cells = split(line, separator_);
+    if (is_closed_ && trimmed(cells.back()).empty()) cells.pop_back();
+    if (separator_ == '\t' && cells.size() + 1 == names_.size()) cells.emplace_back();
+    return cells;
+  }
+
+  // Where commas do not part cells they may stand for the decimal point.
+  Result<double> number(std::string_view cell, const std::string& name) const {
+    std::string digits(unquoted(cell));
+    const bool is_comma = separator_ != ',' && std::ranges::count(digits, ',') == 1;
+    if (is_comma && digits.find('.') == std::string::npos) std::ranges::replace(digits, ',', '.');
+    return lines_.number(digits, name);
+  }
+
   Result<void> read_row(std::string_view line) {
-    const std::vector<std::string_view> cells = split(line, ',');
+    const std::vector<std::string_view> cells = cells_of(line);
     if (cells.size() != names_.size())
       return failure(lines_.error("", fmt::format("{} cells", cells.size()), fmt::format("{}", names_.size())));
     BrdfPoint point;
     wavelength_nm_ = 0.0;
-    for (std::size_t n = 0; n < cells.size(); ++n) GONIO_TRY(read_cell(names_[n], cells[n], point));
+    for (std::size_t n = 0; n < cells.size(); ++n) GONIO_TRY(read_cell(n, cells[n], point));
     if (sidecar_ == nullptr) number_channel(point);
     brdf_.points.push_back(point);
     return {};
   }
 
-  Result<void> read_cell(const std::string& name, std::string_view cell, BrdfPoint& point) {
+  Result<void> read_cell(std::size_t n, std::string_view cell, BrdfPoint& point) {
+    const std::string& name = names_[n];
     for (const NumberColumn& column : kNumberColumns) {
       if (column.name != name) continue;
-      const Result<double> value = lines_.number(cell, name);
+      const Result<double> value = number(cell, name);
       if (!value) return failure(value.error());
-      point.*column.field = *value;
+      point.*column.field = factors_[n] * *value;
       return {};
     }
-    if (name == kFlagsColumn) return read_flags(cell, point);
+    if (name == kFlagsColumn) return read_flags(unquoted(cell), point);
     if (name == kChannelColumn) {
-      const Result<std::size_t> index = lines_.whole(cell, name, 0, kMostPoints);
+      const Result<std::size_t> index = lines_.whole(unquoted(cell), name, 0, kMostPoints);
       if (!index) return failure(index.error());
       point.channel = static_cast<std::uint32_t>(*index);
       return {};
     }
     if (sidecar_ != nullptr) return {};  // it knows the wavelengths, to the bit
-    const Result<double> wavelength = trimmed(cell).empty() ? Result<double>(0.0) : lines_.number(cell, name);
+    const Result<double> wavelength = unquoted(cell).empty() ? Result<double>(0.0) : number(cell, name);
     if (!wavelength) return failure(wavelength.error());
-    wavelength_nm_ = *wavelength;
+    wavelength_nm_ = factors_[n] * *wavelength;
     return {};
   }
 
@@ -148,7 +176,10 @@ class CsvReader {
 
   TextLines lines_;
   const Sidecar* sidecar_;
-  std::vector<std::string> names_;
+  char separator_ = ',';
+  bool is_closed_ = false;                                              ///< rows end with one more separator
+  std::vector<std::string> names_;                                      ///< ours, of the file's columns
+  std::vector<double> factors_;                                         ///< into our units
   double wavelength_nm_ = 0.0;                                          ///< of the row that is read
   std::map<std::pair<std::uint32_t, double>, std::uint32_t> channels_;  ///< by number and wavelength in the file
   MeasuredBrdf brdf_;

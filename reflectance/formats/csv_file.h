@@ -16,11 +16,13 @@ namespace gonio::formats {
 /// Errors: as `check`; InvalidInput for a flag's name with a comma or '|' in it.
 [[nodiscard]] Result<Export> write_csv(const MeasuredBrdf& brdf);
 
-/// Columns in any order; those of a foreign CSV need their names changed to these. Blank lines, and lines that begin
+/// Columns in any order, with our names or those that csv_names.h takes for them; between them commas, semicolons or
+/// tabs (then a comma may be the decimal point), cells in quotation marks or not. Blank lines, and lines that begin
 /// with '#', are passed over. Without a sidecar a channel is what has a number of its own in the column `channel`, or a
 /// wavelength; each flag's name is taken as it comes; nothing is known of the sample, and its symmetry is
-/// `symmetry_of`. Errors: InvalidInput with line and column: no such column, a missing one, too few or too many cells,
-/// no finite number, a last line without its end, another number of points than the sidecar says.
+/// `symmetry_of`. Errors: InvalidInput with line and column: no such column, one without its unit, a missing one, too
+/// few or too many cells, no finite number, a last line without its end, another number of points than the sidecar
+/// says.
 [[nodiscard]] Result<MeasuredBrdf> read_csv(std::string_view csv, std::optional<std::string_view> sidecar,
                                             const std::string& file);
 

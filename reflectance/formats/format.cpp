@@ -9,6 +9,7 @@
 #include "reflectance/formats/astm_file.h"
 #include "reflectance/formats/bird_file.h"
 #include "reflectance/formats/csv_file.h"
+#include "reflectance/formats/csv_names.h"
 #include "reflectance/formats/merl_file.h"
 #include "reflectance/formats/nexus_file.h"
 #include "reflectance/formats/rgl_file.h"
@@ -56,11 +57,19 @@ bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
+bool has_columns_of_astm(std::string_view text) {
+  constexpr std::string_view kKey = "VARS";
+  const std::size_t at = text.find(kKey);
+  return at != std::string_view::npos && trimmed(text.substr(at + kKey.size())).starts_with("theta_i");
+}
+
 std::optional<Format> detect_text(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return std::nullopt;
   const std::string_view line = text.substr(first, text.find('\n', first) - first);
-  const std::string_view names = TextLines(text, "CSV", "").next_filled().value_or("");  // below comments
+  TextLines lines(text, "CSV", "");
+  std::string_view names = lines.next_filled().value_or("");  // below comments
+  if (is_separator_line(names)) names = lines.next_filled().value_or("");
   if (has(names, "theta_i_deg") && has(names, "f_per_sr")) return Format::Csv;
   if (text[first] == '{')
     return has(text, "\"metadata\"") && has(text, "\"BRDF\"") ? std::optional(Format::Bird) : std::nullopt;
@@ -69,7 +78,8 @@ std::optional<Format> detect_text(std::string_view text) {
   if (has(text, "#PARAM_IN")) return Format::Alta;
   if (has(text, "#format: theta phi")) return Format::Pab;
   if (has(text, "ScatterRadial") && has(text, "AngleOfIncidence")) return Format::Zemax;
-  if (has(text, "VARS theta_i")) return Format::Astm;
+  if (has_columns_of_astm(text)) return Format::Astm;
+  if (is_csv_header(names)) return Format::Csv;
   return std::nullopt;
 }
 

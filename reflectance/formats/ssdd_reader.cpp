@@ -53,6 +53,7 @@ class SsddReader {
     GONIO_TRY(take_header());
     const bool is_binary = entries_.at("DATA") == "binary";
     GONIO_TRY(is_binary ? read_binary() : read_text());
+    if (!is_binary) GONIO_TRY(lines_.check_end());
     const bool has_more =
         is_binary ? !trimmed(lines_.rest().substr(binary_bytes())).empty() : lines_.next_filled().has_value();
     if (has_more) brdf_.metadata.remarks.emplace_back("left out", "what follows the BRDF: other blocks are not read");

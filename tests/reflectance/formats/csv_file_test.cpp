@@ -140,7 +140,8 @@ TEST(CsvFile, SaysWhereABadOneIsBad) {
                                  {names + "10,0,20,0,1\n10,0,20,0,1", 3, "no end"},
                                  {names + "10,0,ninety,0,1\n", 2, "theta_r_deg"},
                                  {names + "10,0,90.5,0,1\n", 0, "theta_r_deg"},
-                                 {"theta_i,phi_i\n", 1, "unknown column"},
+                                 {"theta,phi\n", 1, "unknown column"},
+                                 {"theta_i,phi_i\n", 1, "without its unit"},
                                  {"MERL\x01\x02", 1, "unknown column"}};
   for (const BadCsv& row : rows) {
     SCOPED_TRACE(row.csv);
