@@ -44,6 +44,15 @@ Error no_such_channel(const MeasuredBrdf& first, std::size_t channel, const Meas
           .limit = "the same wavelength within 1 nm, or one channel each"};
 }
 
+// A file may name a channel and have no reading of it.
+Error empty_channel(const MeasuredBrdf& other, std::size_t channel) {
+  return {.code = ErrorCode::InvalidInput,
+          .device = "analysis",
+          .tried = "compare with channel " + other.channels[channel].name + " of the other",
+          .seen = "no reading of it",
+          .limit = "readings that make a surface"};
+}
+
 // The other's channel of the same wavelength; where both have one only, that one.
 Result<std::size_t> partner_channel(const MeasuredBrdf& first, std::size_t channel, const MeasuredBrdf& other) {
   constexpr double kSameNm = 1.0;
@@ -66,10 +75,11 @@ Result<Told> file_compared(const MeasuredScan& scan, const Subject& other, std::
   if (!surfaces) return failure(surfaces.error());
   const auto made =
       std::ranges::find(surfaces->channels, other.brdf.channels[channel], &formats::ChannelSurface::channel);
+  const auto* table = made == surfaces->channels.end() ? nullptr : made->surface.as<reflectance::TabulatedSurface>();
+  if (table == nullptr) return failure(empty_channel(other.brdf, channel));
   const Result<MeasuredScan> readings = channel_of(other, channel);
   if (!readings) return failure(readings.error());
-  const auto& table = *made->surface.as<reflectance::TabulatedSurface>();
-  return table_compared(scan, {.name = name, .table = table, .readings = *readings}, stem);
+  return table_compared(scan, {.name = name, .table = *table, .readings = *readings}, stem);
 }
 
 // What the first is compared with.

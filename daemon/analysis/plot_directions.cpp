@@ -202,17 +202,22 @@ Picture lobe_picture(const ChannelView& view) {
   picture.caption =
       "f_r as the distance from the origin in each direction, where it was measured. Red: towards the source "
       "(retro-reflection); blue: the mirror direction; grey: the normal.";
+  // One scale of colours for all panels, below them [px].
+  constexpr double kScaleAbove = 54.0;
+  constexpr double kScaleHeight = 10.0;
   const double reach = 1.05 * (scale.is_log ? std::cbrt(scale.most) : scale.most);
   picture.script += kPalette;
   picture.script += fmt::format(
-      "set view 66,30,1.7; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set "
+      "set view 66,30,2.4; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set "
       "xyplane "
       "at "
       "0\nset xrange [{0:.6g}:{1:.6g}]; set yrange [{0:.6g}:{1:.6g}]; set zrange [0:{1:.6g}]; set cblabel 'f_r "
       "[sr⁻¹]'\n"
       "set format cb '%.3g'; set cbrange [{2:.6g}:{3:.6g}]; set pm3d depthorder; set "
-      "angles degrees\n{4}",
-      -reach, reach, scale.least, scale.most, scale.is_log ? "set logscale cb\n" : "");
+      "angles degrees\n"
+      "set colorbox horizontal user origin screen 0.35,{5:.4g} size screen 0.3,{6:.4g}\n{4}",
+      -reach, reach, scale.least, scale.most, scale.is_log ? "set logscale cb\n" : "", kScaleAbove / picture.height_px,
+      kScaleHeight / picture.height_px);
   for (std::size_t n = 0; n < groups.size(); ++n) {
     const std::string grid = table_name(view, "lobe", n);
     picture.tables.emplace_back(grid, hemisphere_table(view, groups[n], scale));

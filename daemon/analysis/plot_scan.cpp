@@ -121,7 +121,8 @@ Picture drift_picture(const std::string& stem, const daemon::ScanHistory& histor
   std::string& s = picture.script;
   s = "set palette defined (0 '#440154', 1 '#31688e', 2 '#35b779', 3 '#fde725'); unset colorbox\nset multiplot layout "
       "2,2 title 'Course of the scan' font ',15'\nset grid lc rgb '#dddddd'; set xlabel 'minutes since the "
-      "first reading'; set key top left samplen 1 font ',9'\n";
+      "first reading'; set key top left samplen 1 font ',9'\nset offsets graph 0.03, graph 0.03, graph 0.06, graph "
+      "0.06\n";
   s += fmt::format(
       "set title 'Lamp monitor'; set ylabel 'from its mean [%]'\nplot {} using 1:2 with points pt 7 ps 0.25 lc "
       "rgb '#31688e' notitle\n",
@@ -140,8 +141,10 @@ Picture drift_picture(const std::string& stem, const daemon::ScanHistory& histor
                       "set tics; set "
                       "autoscale\n"
                     : plot + "\n";
-  s += "set title 'Dark'; set ylabel 'mean [DN]'\n" + dark_plot(darks, exposures);
+  s += "set title 'Dark'; set ylabel 'mean [DN]'; set key outside right\n" + dark_plot(darks, exposures);
+  // Above the curves there is room for the key.
   s += fmt::format(
+      "set key inside top left; set offsets graph 0.03, graph 0.03, graph 0.45, graph 0.06\n"
       "set title 'Environment'; set ylabel 'temperature [°C]'; set y2label 'humidity [%]'; set y2tics; set ytics "
       "nomirror\nplot {0} using 1:3 with lines lc rgb '#d62728' title 'lamp', {0} using 1:4 with lines lc rgb "
       "'#440154' title 'detector', {0} using 1:5 with lines lc rgb '#31688e' title 'room', {0} using 1:6 axes "

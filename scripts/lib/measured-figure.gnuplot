@@ -55,7 +55,7 @@ if (kind eq 'cut') {
 marks = (kind eq 'cut')
 set bmargin at screen 0.42; set tmargin at screen 0.88
 set yrange [0:1.3*most_formula]; set format x ''; set ylabel 'f_r [sr^{-1}]' font ',11'
-set key top center horizontal font ',10' samplen 1.5 width 1
+set key at screen 0.7775,0.91 center center horizontal font ',10' samplen 1.5 width 1  # above the frame: marks cross nothing
 if (marks) {
   set arrow 11 from theta_i, graph 0 to theta_i, graph 1 nohead dt 2 lc rgb '#d62728'; set arrow 12 from -theta_i, graph 0 to -theta_i, graph 1 nohead dt 3 lc rgb '#d62728'
   set label 11 'retro' at theta_i, graph 0.05 left offset 0.3,0 tc rgb '#d62728' font ',10'; set label 12 'specular' at -theta_i, graph 0.05 right offset -0.3,0 tc rgb '#d62728' font ',10'

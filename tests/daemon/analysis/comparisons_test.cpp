@@ -10,6 +10,10 @@
 
 #include "daemon/analysis/job.h"
 #include "daemon/analysis/model_text.h"
+#include "reflectance/formats/csv_file.h"
+#include "reflectance/formats/merl_file.h"
+#include "reflectance/formats/write_export.h"
+#include "reflectance/surface/lambertian.h"
 #include "tests/daemon/analysis/stored_scans.h"
 #include "tests/support/process.h"
 
@@ -161,6 +165,34 @@ TEST_F(Comparisons, WhatCannotBeComparedHasItsWord) {
   EXPECT_THAT(word_for({.kind = "compare", .scan = 1, .other_model = "lambertian rho=much"}), HasSubstr("rho=much"));
   EXPECT_THAT(word_for({.kind = "compare", .scan = 1}, folder_ / "no.csv"), HasSubstr("none of the formats"));
   EXPECT_THAT(word_for({.kind = "repeatability", .scan = 1, .others = {77}}), HasSubstr("no scan of this number"));
+}
+
+TEST_F(Comparisons, AFileThatMakesNoSurfaceHasItsWord) {
+  const test::StoredValues store(square_grid(), kTenth);
+  // The scan's wavelength is a channel of the file, but all readings are of the other one.
+  formats::MeasuredBrdf theirs;
+  theirs.channels = {formats::channel_at(568.0), formats::channel_at(700.0)};
+  for (const double theta_i : {0.0, 30.0}) {
+    for (const double theta_r : {0.0, 30.0, 60.0}) {
+      for (const double phi : {0.0, 90.0, 180.0})
+        theirs.points.push_back(
+            {.theta_i_deg = theta_i, .theta_r_deg = theta_r, .phi_r_deg = phi, .f_per_sr = 0.1, .channel = 1});
+    }
+  }
+  ASSERT_TRUE(formats::write_export(folder_ / "empty-channel", formats::write_csv(theirs).value()));
+  formats::SurfaceFile grey;
+  grey.channels.push_back({.channel = formats::channel_at(550.0),
+                           .surface = reflectance::Surface(reflectance::Lambertian::make({.rho = 0.3}).value())});
+  ASSERT_TRUE(formats::write_export(folder_ / "grey", formats::write_merl(grey).value()));
+
+  const auto empty = run(store.file(), {.kind = "compare", .scan = 1}, folder_ / "empty-channel.csv");
+  const auto merl = run(store.file(), {.kind = "compare", .scan = 1}, folder_ / "grey.binary");
+
+  ASSERT_FALSE(empty);
+  EXPECT_THAT(describe(empty.error()), HasSubstr("no reading of it"));
+  ASSERT_FALSE(merl);
+  EXPECT_EQ(merl.error().code, ErrorCode::InvalidInput);
+  EXPECT_THAT(describe(merl.error()), HasSubstr("the other has R, G, B")) << "it does not say which wavelengths";
 }
 
 TEST_F(Comparisons, SymmetriesAreLookedAtPairByPair) {
