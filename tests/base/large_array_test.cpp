@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace gonio {
 namespace {
@@ -25,6 +26,17 @@ TEST(LargeArray, TakesPagesThatWereGivenBack) {
   EXPECT_EQ(second.data(), before);
   EXPECT_EQ(second.back(), 2.0);
 }
+
+#if defined(__SANITIZE_ADDRESS__)
+TEST(LargeArrayDeathTest, IsSeenByTheAddressSanitizerWhereItIsOver) {
+  constexpr std::size_t kNumbers = (std::size_t{5} << 20U) / sizeof(double) + 1;
+  std::optional<LargeArray<double>> numbers(kNumbers);
+  const volatile double* const first = numbers->data();
+  EXPECT_DEATH((void)first[kNumbers], "AddressSanitizer");
+  numbers.reset();
+  EXPECT_DEATH((void)first[0], "AddressSanitizer");
+}
+#endif
 
 TEST(LargeArray, KeepsItsElementsThroughGrowthAndCopies) {
   LargeArray<int> grown;
