@@ -211,17 +211,18 @@ Picture lobe_picture(const ChannelView& view) {
       "set view 66,30,2.4; set view equal xyz; unset key; set border 0; unset xtics; unset ytics; unset ztics; set "
       "xyplane "
       "at "
-      "0\nset xrange [{0:.6g}:{1:.6g}]; set yrange [{0:.6g}:{1:.6g}]; set zrange [0:{1:.6g}]; set cblabel 'f_r "
-      "[sr⁻¹]'\n"
-      "set format cb '%.3g'; set cbrange [{2:.6g}:{3:.6g}]; set pm3d depthorder; set "
-      "angles degrees\n"
-      "set colorbox horizontal user origin screen 0.35,{5:.4g} size screen 0.3,{6:.4g}\n{4}",
-      -reach, reach, scale.least, scale.most, scale.is_log ? "set logscale cb\n" : "", kScaleAbove / picture.height_px,
-      kScaleHeight / picture.height_px);
+      "0\nset xrange [{0:.6g}:{1:.6g}]; set yrange [{0:.6g}:{1:.6g}]; set zrange [0:{1:.6g}]\n"
+      "set format cb ''; set cbrange [{2:.6g}:{3:.6g}]; set pm3d depthorder; set "
+      "angles degrees\n{4}",
+      -reach, reach, scale.least, scale.most, scale.is_log ? "set logscale cb\n" : "");
+  // It is drawn with each panel, at the same place: gnuplot leaves arrows out of a panel that has none. Its words once.
+  picture.script += fmt::format("set colorbox horizontal user origin screen 0.35,{:.4g} size screen 0.3,{:.4g}\n",
+                                kScaleAbove / picture.height_px, kScaleHeight / picture.height_px);
   for (std::size_t n = 0; n < groups.size(); ++n) {
     const std::string grid = table_name(view, "lobe", n);
     picture.tables.emplace_back(grid, hemisphere_table(view, groups[n], scale));
     const double t = groups[n].theta_i_deg;
+    if (n + 1 == groups.size()) picture.script += "set format cb '%.3g'; set cblabel 'f_r [sr⁻¹]'\n";
     picture.script += fmt::format(
         "set title 'θᵢ = {0:.4g}°'\n"
         "set arrow 1 from 0,0,0 to {1:.6g}*sin({0:.6g}),0,{1:.6g}*cos({0:.6g}) lw 2.5 lc rgb '#d62728' front\n"

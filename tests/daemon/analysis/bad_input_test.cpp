@@ -78,5 +78,20 @@ TEST_F(BadInput, AScanWhoseEveryPointIsFlaggedSaysWhichFlags) {
   }
 }
 
+// A model is what needs no second scan.
+TEST_F(BadInput, OneIncidenceAndFlagsAreSaidByEveryOtherJobToo) {
+  test::StoredValues store(rings({30}), kGrey, 0b101);
+  for (const char* kind : {"describe", "report", "compare", "export"}) {
+    SCOPED_TRACE(kind);
+
+    const auto done = analyse(
+        store.file(), {.kind = kind, .scan = store.id(), .format = "bird", .other_model = "lambertian rho=0.5"});
+
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    EXPECT_THAT(done.errors, HasSubstr("one theta_i only"));
+    EXPECT_THAT(done.errors, HasSubstr("every value is flagged: near-zero, few-neighbours"));
+  }
+}
+
 }  // namespace
 }  // namespace gonio::analysis
