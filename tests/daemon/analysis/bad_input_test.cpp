@@ -78,10 +78,10 @@ TEST_F(BadInput, AScanWhoseEveryPointIsFlaggedSaysWhichFlags) {
   }
 }
 
-// A model is what needs no second scan.
+// A model is what needs no second scan. A report needs an instrument, which these stores have not.
 TEST_F(BadInput, OneIncidenceAndFlagsAreSaidByEveryOtherJobToo) {
   test::StoredValues store(rings({30}), kGrey, 0b101);
-  for (const char* kind : {"describe", "report", "compare", "export"}) {
+  for (const char* kind : {"describe", "compare", "export"}) {
     SCOPED_TRACE(kind);
 
     const auto done = analyse(
