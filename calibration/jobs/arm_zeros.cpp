@@ -167,12 +167,12 @@ Row row_of(const Centre& centre) {
     }
     case Crossing::Along::PhiR:
       row.seen = in_radians(wrapped(radians(centre.x) - degrees(180.0)));
-      row.slopes = {0.0, 0.0, -1.0, 0.0, 1.0 / std::sin(centre.theta_i)};
+      row.slopes = {0.0, 0.0, -1.0, 0.0, -1.0 / std::tan(centre.theta_i)};
       break;
     case Crossing::Along::Normal: {
       const double cosine = std::cos(in_radians(centre.of.phi_r));
       row.seen = centre.x;
-      row.slopes = {-cosine, -1.0, 0.0, 2.0 * cosine, -std::sin(in_radians(centre.of.phi_r))};
+      row.slopes = {-cosine, -1.0, 0.0, 2.0 * cosine, std::sin(in_radians(centre.of.phi_r))};
       break;
     }
   }
@@ -266,6 +266,16 @@ Crossings measured_crossings(const ScanReadings& scan, const InstrumentModel& in
   return all;
 }
 
+// What its mounting did across the plane of incidence it may have done in the plane, where no angle tells.
+std::string lean_words(const Solution& solution, double widening, Angle u_mirror) {
+  constexpr double kBelied = 2.0;  // standard deviations
+  const Angle lean = radians(0.5 * solution.values[kAcross]);
+  const Angle u = radians(0.5 * std::sqrt(widening * solution.covariance[kAcross * kParameters + kAcross]));
+  const bool is_belied = std::abs(in_radians(lean)) > kBelied * std::hypot(in_radians(u), in_radians(u_mirror));
+  return fmt::format("; the mirror leans {:.4f} deg across the plane of incidence, u = {:.4f} deg{}", in_degrees(lean),
+                     in_degrees(u), is_belied ? ": more than u_mirror_deg says of the lean in the plane" : "");
+}
+
 }  // namespace
 
 Result<FoundValues> fit_arm_zeros(const ScanReadings& scan, const InstrumentModel& instrument,
@@ -287,17 +297,18 @@ Result<FoundValues> fit_arm_zeros(const ScanReadings& scan, const InstrumentMode
   const double dof = static_cast<double>(crossings.rows.size()) - (crosses_normal ? 4.0 : 3.0);
   const double ratio = dof > 0.0 ? solution->chi2 / dof : 1.0;
   FoundValues found;
+  const double widening = std::max(1.0, ratio);
   const std::array<const char*, 3> names{"zero_theta_i_deg", "zero_theta_r_deg", "zero_phi_r_deg"};
   const double degree = in_degrees(radians(1.0));
   for (std::size_t a = 0; a < names.size(); ++a) {
     found.values.push_back({.name = names[a], .unit = "deg", .value = degree * solution->values[a]});
     for (std::size_t b = 0; b < names.size(); ++b) {
-      found.covariance.push_back(degree * degree * std::max(1.0, ratio) * solution->covariance[a * kParameters + b]);
+      found.covariance.push_back(degree * degree * widening * solution->covariance[a * kParameters + b]);
     }
   }
   found.note = fmt::format(
-      "{} crossings of the mirror's lobe, {} of them across the normal; chi-square {:.2f} a degree of freedom{}",
-      crossings.rows.size(), crossings.across_normal, ratio,
+      "{} crossings of the mirror's lobe, {} of them across the normal; chi-square {:.2f} a degree of freedom{}{}",
+      crossings.rows.size(), crossings.across_normal, ratio, lean_words(*solution, widening, options.u_mirror),
       crosses_normal ? ""
                      : "; theta_i and theta_r are known by their difference: their sum is as uncertain as "
                        "instrument.toml states");

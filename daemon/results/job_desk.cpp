@@ -25,7 +25,7 @@ namespace {
 
 using calibration::FoundValues;
 
-constexpr std::string_view kJobCode = "gonio-jobs-1";  // grows whenever the same readings would give other values
+constexpr std::string_view kJobCode = "gonio-jobs-2";  // grows whenever the same readings would give other values
 constexpr std::string_view kMeanReff = "mean_reff";
 constexpr std::string_view kOwnU = "u_own_mean_reff";
 
