@@ -53,6 +53,10 @@ bool is_utf16(std::string_view bytes) {
   return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
 }
 
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+}
+
 bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
@@ -92,6 +96,20 @@ Error unknown_format(std::string file, std::string seen) {
           .seen = std::move(seen),
           .limit = known,
           .where = InputLocation{std::move(file), 1, ""}};
+}
+
+// A table has its columns named, so that whoever brought it can mend them.
+std::string seen_instead(std::string_view bytes) {
+  constexpr std::size_t kMost = 80;
+  if (bytes.empty()) return "an empty file";
+  const std::string_view first = TextLines(bytes.substr(0, kMost), "CSV", "").next_filled("").value_or("");
+  const bool is_text = std::ranges::none_of(first, [](char c) { return c != '\t' && is_control(c); });
+  const bool is_table = is_text && (split(first, csv_separator(first)).size() > 2 || words(first).size() > 2);
+  if (!is_table) return "none of the formats that are known";
+  return fmt::format(
+      "none of the formats that are known; if '{}' are columns of a CSV, its first line must name theta_i_deg, "
+      "phi_i_deg, theta_r_deg, phi_r_deg and f_per_sr",
+      one_line(first));
 }
 
 Result<MeasuredBrdf> read_as(Format format, std::string_view bytes, const std::string& file,
@@ -155,8 +173,7 @@ Result<MeasuredBrdf> read_brdf(std::string_view bytes, const std::string& file,
                                std::optional<std::string_view> sidecar) {
   const std::optional<Format> format = detect_format(bytes);
   if (!format && is_utf16(bytes)) return failure(unknown_format(file, "UTF-16 text; save it as UTF-8"));
-  if (!format)
-    return failure(unknown_format(file, bytes.empty() ? "an empty file" : "none of the formats that are known"));
+  if (!format) return failure(unknown_format(file, seen_instead(without_byte_order_mark(bytes))));
   Result<MeasuredBrdf> brdf = read_as(*format, without_byte_order_mark(bytes), file, sidecar);
   if (brdf) make_texts_utf8(*brdf);
   return brdf;

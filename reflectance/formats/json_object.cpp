@@ -18,6 +18,18 @@ void JsonSource::fail(std::string field, std::string seen, std::string limit) {
                 .where = InputLocation{file, 0, std::move(field)}};
 }
 
+namespace {
+
+// What some programs write for a number and JSON has not, by its name. `byte` is the last that was looked at, from 1.
+std::string word_there(std::string_view text, std::size_t byte) {
+  if (byte == 0) return {};
+  for (const std::string_view word : {"NaN", "Infinity"})
+    if (text.substr(byte - 1).starts_with(word)) return fmt::format(": {}, which is no number of JSON", word);
+  return {};
+}
+
+}  // namespace
+
 Result<json> parse_json(std::string_view text, const JsonSource& source) {
   try {
     return json::parse(text);
@@ -29,7 +41,7 @@ Result<json> parse_json(std::string_view text, const JsonSource& source) {
     const auto line = 1 + std::count(text.begin(), end, '\n');
     return failure({.code = ErrorCode::InvalidInput,
                     .tried = "read it as " + source.format,
-                    .seen = fmt::format("no JSON at byte {} of {}", byte, text.size()),
+                    .seen = fmt::format("no JSON at byte {} of {}{}", byte, text.size(), word_there(text, byte)),
                     .limit = {},
                     .where = InputLocation{source.file, static_cast<int>(line), ""}});
   }

@@ -31,8 +31,8 @@ struct SsddAxes {
 
 /// The file's BRDF block; spherical, specular or half-difference coordinates, values as text or in binary, any colour
 /// model. Directions below the horizon are left out, and blocks after it (a remark says so). Errors: InvalidInput with
-/// line or byte: an order, key or word that is not the format's, lists that do not rise, too few values, a block that
-/// is no BRDF.
+/// line or byte: an order, key or word that is not the format's, lists that do not rise, too few values, in text too
+/// many, a block that is no BRDF.
 [[nodiscard]] Result<MeasuredBrdf> read_ssdd(std::string_view bytes, const std::string& file);
 
 }  // namespace gonio::formats

@@ -54,8 +54,9 @@ class SsddReader {
     const bool is_binary = entries_.at("DATA") == "binary";
     GONIO_TRY(is_binary ? read_binary() : read_text());
     if (!is_binary) GONIO_TRY(lines_.check_end());
-    const bool has_more =
-        is_binary ? !trimmed(lines_.rest().substr(binary_bytes())).empty() : lines_.next_filled().has_value();
+    const std::optional<std::string_view> next = is_binary ? std::nullopt : lines_.next_filled();
+    if (next) GONIO_TRY(check_is_no_value(*next));
+    const bool has_more = next || (is_binary && !trimmed(lines_.rest().substr(binary_bytes())).empty());
     if (has_more) brdf_.metadata.remarks.emplace_back("left out", "what follows the BRDF: other blocks are not read");
     GONIO_TRY(check(brdf_, lines_.file()));
     return std::move(brdf_);
@@ -148,6 +149,12 @@ class SsddReader {
                                     fmt::format("{} fit in the file", most)));
     }
     return {};
+  }
+
+  // Another block begins with a word. A number says that a list is short of an angle, so that values stand elsewhere.
+  Result<void> check_is_no_value(std::string_view line) const {
+    if (!lines_.number(key_and_rest(line).key, "DATA")) return {};
+    return failure(lines_.error("DATA", "more values than PARAM0_LIST to PARAM3_LIST have directions", "one for each"));
   }
 
   template <class Take>

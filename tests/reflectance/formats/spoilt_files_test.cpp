@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -190,6 +192,29 @@ TEST(SpoiltFiles, WithAnAngleThatIsNoneAreRefused) {
       expect_refused(file, with(file, file.angle, none));
     }
   }
+}
+
+bool is_finite(const BrdfPoint& p) {
+  return std::isfinite(p.theta_i_deg + p.phi_i_deg + p.theta_r_deg + p.phi_r_deg + p.f_per_sr);
+}
+
+// In its incidences, its normals, its wavelengths, its spectra and between them.
+TEST(SpoiltFiles, AnRglFileWithNaNAnywhereHandsOnNone) {
+  const std::string good = rgl_bytes();
+  const std::string none = in_memory(static_cast<float>(kNaN));
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at + none.size() <= good.size(); at += none.size()) {
+    std::string bytes = good;
+    bytes.replace(at, none.size(), none);
+    const Result<MeasuredBrdf> read = read_brdf(bytes, "theirs.dat");
+    if (read) {
+      EXPECT_TRUE(std::ranges::all_of(read->points, is_finite)) << "byte " << at;
+    } else {
+      ++refused;
+      EXPECT_THAT(describe(read.error()), HasSubstr("theirs.dat"));
+    }
+  }
+  EXPECT_GT(refused, 100U);
 }
 
 }  // namespace

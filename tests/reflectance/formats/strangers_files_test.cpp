@@ -160,12 +160,45 @@ TEST(StrangersFiles, OfSsddAreRead) {
     EXPECT_EQ(read->points[0].f_per_sr, 0.25);
   }
   expect_word({"what goes through", "VERSION 0.2\nDATA_TYPE btdf\nDATA ascii\n1\n"}, "btdf");
+  expect_word({"a list that is short of an angle", text("\n") + "0.75\n"}, "more values than PARAM0_LIST");
+}
+
+std::string bird_text(const std::string& data) {
+  return "\xEF\xBB\xBF{\r\n  \"data\": {" + data +
+         R"(, "phi_i": {"unit": "deg", "values": [0]}, "theta_r": {"values": [45.0], "unit": "deg"},
+             "phi_r": {"unit": "\u00b0", "values": [60]}},
+            "metadata": {"type": "BRDF", "sample": {"name": "paint"}, "instrumentation": "NA", "environment": "NA",
+                         "a_laboratory's_own": [1, {"x": null}]}})";
+}
+
+TEST(StrangersFiles, OfBirdAreRead) {
+  const std::string theta_i = R"("theta_i": {"unit": "deg", "values": [3e1]})";
+  for (const Stranger& file :
+       {Stranger{"data first, no uncertainty", bird_text(theta_i + R"(, "BRDF": {"unit": "1/sr", "values": [0.25]})")},
+        Stranger{"a unit that is left out", bird_text(theta_i + R"(, "BRDF": {"values": [0.25]})")},
+        Stranger{"its uncertainty in percent, a wavelength",
+                 bird_text(theta_i + R"(, "BRDF": {"unit": "sr^-1", "values": [0.25]},
+                   "uBRDF": {"unit": "%", "values": [2]}, "wavelength_i": {"unit": "nm", "values": [550]})")}}) {
+    expect_the_reading(file);
+  }
+  expect_word({"no number, as Python writes it", bird_text(theta_i + R"(, "BRDF": {"values": [NaN]})")}, "NaN");
+  expect_word({"infinity, as Python writes it", bird_text(theta_i + R"(, "BRDF": {"values": [-Infinity]})")},
+              "Infinity, which is no number");
+  expect_word({"nothing", bird_text(theta_i + R"(, "BRDF": {"values": [null]})")}, "data.BRDF.values[0]");
+  expect_word({"a number in quotation marks", bird_text(theta_i + R"(, "BRDF": {"values": ["0.25"]})")},
+              "data.BRDF.values[0]");
+  expect_word({"a value more", bird_text(theta_i + R"(, "BRDF": {"values": [0.25, 0.5]})")}, "2 values");
+  expect_word({"an angle without unit", bird_text(R"("theta_i": {"values": [30]}, "BRDF": {"values": [0.25]})")},
+              "data.theta_i.unit");
 }
 
 TEST(StrangersFiles, OfOtherKindsAreNamed) {
   expect_word({"UTF-16 of a spreadsheet", std::string("\xFF\xFEt\0h\0", 6)}, "UTF-16");
   expect_word({"a spreadsheet itself", "PK\x03\x04 xl/workbook.xml"}, "none of the formats");
   expect_word({"a page", "<!DOCTYPE html><html></html>\n"}, "none of the formats");
+  expect_word({"columns under other names", "incidence;view;azimuth;value\n30;45;60;0.25\n"},
+              "'incidence;view;azimuth;value' are columns of a CSV, its first line must name theta_i_deg");
+  expect_word({"numbers alone", "30 0 45 60 0.25\n30 0 45 90 0.25\n"}, "must name theta_i_deg");
 }
 
 }  // namespace
