@@ -51,6 +51,20 @@ void add_certificate(Facts& facts, const ReportParts& parts) {
   }
 }
 
+// At each wavelength the first point that has a value.
+std::string certificate_traces(const ReportParts& parts) {
+  std::set<std::int32_t> valued;
+  for (const daemon::BrdfRow& row : parts.scan.brdf.rows) valued.insert(row.point);
+  std::set<double> wavelengths;
+  std::string html;
+  for (const daemon::PointInfo& info : parts.scan.points) {
+    const bool is_first =
+        valued.contains(info.point.index) && wavelengths.insert(in_nanometres(info.point.wavelength)).second;
+    if (is_first) html += ", " + trace_command(parts.scan, info.point.index);
+  }
+  return html;
+}
+
 }  // namespace
 
 std::string sample_section(const ReportParts& parts) {
@@ -101,8 +115,9 @@ std::string chain_section(const ReportParts& parts) {
   facts.emplace_back("measurand",
                      "f<sub>r</sub> at the reported directions and the wavelength's centroid, at zero aperture");
   return "<h2>Calibration chain</h2>\n" + html_facts(facts) +
-         fmt::format("<p><code>gonioctl reference show {}</code>, <code>gonioctl instrument</code></p>\n",
-                     html_text(parts.scan.info.reference_serial));
+         fmt::format("<p><code>gonioctl reference show {}</code>, <code>gonioctl instrument</code>",
+                     html_text(parts.scan.info.reference_serial)) +
+         certificate_traces(parts) + "</p>\n";
 }
 
 std::string environment_section(const ReportParts& parts) {
@@ -143,7 +158,8 @@ std::string origins_section(const ReportParts& parts) {
                      {"plan", html_text(texts.plan_file) + ", sha256 " + code(texts.plan_sha256)},
                      {"instrument", "sha256 " + code(texts.instrument_sha256) + ", without addresses " +
                                         code(parts.scan.info.instrument_hash)},
-                     {"standard's file", "sha256 " + code(texts.reference_sha256)}});
+                     {"standard's file", "sha256 " + code(texts.reference_sha256)}}) +
+         fmt::format("<p>All of them: <code>gonioctl data export {}</code>, in its head</p>\n", parts.scan.info.id);
 }
 
 }  // namespace gonio::analysis

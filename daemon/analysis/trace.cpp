@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "calibration/reference_standard.h"
 #include "daemon/results/calibration_desk.h"
 
 namespace gonio::analysis {
@@ -33,6 +34,16 @@ std::string recomputed_line(const BrdfRow& row, const daemon::NewBrdf& recompute
                     again->sensitivities_per_sr == row.sensitivities_per_sr;
   return fmt::format("  computed anew from these readings: {:.17g} sr^-1, {}\n", again->value_per_sr,
                      same ? "the same bits, U too" : "not the same");
+}
+
+// What the certificate says at the point's wavelength, between its entries as the calibration takes it.
+std::string certificate_line(const StoredScan& scan, Wavelength wavelength) {
+  const auto standard = calibration::ReferenceStandard::parse(scan.texts.reference, "the scan's reference");
+  if (!standard) return "";
+  const auto rho = standard->reflectance(wavelength);
+  if (!rho) return "";
+  return fmt::format("  standard {}, certified reflectance at {:.6g} nm: {:.8g}, U {:.4g} (k = 2)\n",
+                     standard->serial(), in_nanometres(wavelength), rho->value, 2.0 * rho->u);
 }
 
 std::string value_lines(const StoredScan& scan, const BrdfRow& row, const daemon::NewBrdf& recomputed) {
@@ -100,6 +111,7 @@ Result<std::string> trace_text(const StoredScan& scan, const daemon::PointTrace&
   text += row == scan.brdf.rows.end()
               ? std::string(planned->point.blocked ? "no value: in the detector's shadow\n" : "no value\n")
               : value_lines(scan, *row, recomputed);
+  text += certificate_line(scan, planned->point.wavelength);
   for (const daemon::TracedAttempt& attempt : trace.attempts) text += attempt_lines(attempt);
   if (planned->reference_outcome.empty() && !planned->point.blocked) {
     text +=

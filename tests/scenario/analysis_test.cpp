@@ -65,7 +65,7 @@ std::string visible_text(std::string html) {
 // Words that are numbers, and nothing but; times of day are none.
 std::vector<std::string> numbers_in(std::string text) {
   text = std::regex_replace(text, std::regex("[0-9-]+T[0-9:.]+Z"), " ");
-  for (const char* parting : {"\u00b1", ",", ";", ":", "(", ")", "{", "}", "[", "]", "\""}) {
+  for (const char* parting : {"\u00b1", "\u00b0", ",", ";", ":", "(", ")", "{", "}", "[", "]", "\""}) {
     for (std::size_t at = text.find(parting); at != std::string::npos; at = text.find(parting, at)) {
       text.replace(at, std::string(parting).size(), " ");
     }
@@ -241,7 +241,8 @@ TEST_F(Analysis, EveryNumberOfAReportIsSaidByTheCommandsOfItsSection) {
   ASSERT_EQ(bench_.gonioctl({"data", "report", scan, "-o", page_file}).exit_code, 0);
   const std::string page = text_of(page_file);
 
-  for (const char* heading : {"Result", "Budget", "Self-checks", "Fit", "Environment"}) {
+  for (const char* heading :
+       {"Result", "Sample and geometry", "Calibration chain", "Budget", "Self-checks", "Fit", "Environment"}) {
     SCOPED_TRACE(heading);
     expect_traced(section_of(page, heading));
   }
@@ -255,6 +256,25 @@ TEST_F(Analysis, EveryNumberOfAReportIsSaidByTheCommandsOfItsSection) {
     expect_traced(values.substr(0, end));
     values.erase(0, end + 5);
   }
+}
+
+TEST_F(Analysis, EveryHashOfAReportIsSaidByTheCommandsOfItsSection) {
+  const std::string scan = std::to_string(measure());
+  const std::string page_file = bench_.folder() + "/report.html";
+  ASSERT_EQ(bench_.gonioctl({"data", "report", scan, "-o", page_file}).exit_code, 0);
+  const std::string section = section_of(text_of(page_file), "Software and configuration");
+
+  std::string said;
+  for (const std::string& command : commands_in(section)) {
+    std::istringstream words(command);
+    said += bench_.gonioctl({std::istream_iterator<std::string>(words), {}}).output;
+  }
+  const std::regex hash("[0-9a-f]{64}");
+  int hashes = 0;
+  for (std::sregex_iterator shown(section.begin(), section.end(), hash), end; shown != end; ++shown, ++hashes) {
+    EXPECT_THAT(said, HasSubstr(shown->str()));
+  }
+  EXPECT_EQ(hashes, 4) << "plan, instrument with and without addresses, standard";
 }
 
 TEST_F(Analysis, WhatIsNotThereIsSaid) {
