@@ -38,7 +38,8 @@ std::string html_text(std::string_view text) {
 
 std::string html_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                        std::size_t numeric) {
-  std::string html = "<table><thead><tr>";
+  constexpr std::size_t kOfOnePage = 16;  // rows that a printed page surely holds: such a table is not broken
+  std::string html = rows.size() <= kOfOnePage ? "<table class=\"whole\"><thead><tr>" : "<table><thead><tr>";
   for (std::size_t n = 0; n < header.size(); ++n) {
     html += (n >= numeric ? "<th class=\"n\">" : "<th>") + header[n] + "</th>";
   }
