@@ -1,6 +1,7 @@
 #include "bench/wires/stage_tap.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -9,37 +10,30 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "protocol/stage/register_map.h"
+#include "sim/wires/rtu_frame.h"
 
 namespace gonio::bench {
 namespace {
 
 constexpr Duration kTapPatience = std::chrono::seconds(10);
-constexpr std::size_t kHead = 6;  // up to the length; the unit follows
-constexpr std::size_t kFunctionAt = 7;
+constexpr std::size_t kHead = 6;  // of a frame on TCP, up to the length; the unit follows
 constexpr std::uint8_t kReads = 0x03;
 constexpr std::uint8_t kWritesSeveral = 0x10;
 constexpr std::uint8_t kWritesAndReads = 0x17;
 
-// The first register that a request writes, whichever function it uses.
-std::optional<int> written_at(std::span<const std::uint8_t> frame) {
-  const auto word = [frame](std::size_t at) { return frame[at] * 256 + frame[at + 1]; };
-  if (frame.size() > 13 && frame[kFunctionAt] == kWritesSeveral) return word(8);
-  if (frame.size() > 17 && frame[kFunctionAt] == kWritesAndReads) return word(12);
+// The first register that a request writes, whichever function it uses. The PDU begins with the function.
+std::optional<int> written_at(std::span<const std::uint8_t> pdu) {
+  const auto word = [pdu](std::size_t at) { return pdu[at] * 256 + pdu[at + 1]; };
+  if (pdu.size() > 6 && pdu[0] == kWritesSeveral) return word(1);
+  if (pdu.size() > 10 && pdu[0] == kWritesAndReads) return word(5);
   return std::nullopt;
 }
 
-bool reads(std::span<const std::uint8_t> frame) {
-  return frame.size() > kFunctionAt && (frame[kFunctionAt] == kReads || frame[kFunctionAt] == kWritesAndReads);
-}
-
-void send_at_once(const sim::FileDescriptor& to, std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::send(to.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (n <= 0) return;
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
-  }
+bool reads(std::span<const std::uint8_t> pdu) {
+  return !pdu.empty() && (pdu[0] == kReads || pdu[0] == kWritesAndReads);
 }
 
 void without_delay(const sim::FileDescriptor& socket) {
@@ -65,6 +59,16 @@ StageTap::StageTap(std::uint16_t stage_port)
       listener_(sim::listen_tcp("127.0.0.1", 0).value()),
       wake_up_(sim::make_wake_up().value()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+StageTap::StageTap(const std::string& line, const std::string& stage_line)
+    : line_(sim::SerialPty::open(line).value()), wake_up_(sim::make_wake_up().value()) {
+  auto pair = std::make_unique<Pair>();
+  pair->daemon = sim::FileDescriptor(::dup(line_->descriptor()));
+  pair->stage = sim::FileDescriptor(::open(stage_line.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  if (pair->stage.get() < 0) throw std::runtime_error("cannot open " + stage_line);
+  pairs_.push_back(std::move(pair));
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
 
 StageTap::~StageTap() {
   thread_.request_stop();
@@ -101,6 +105,7 @@ bool StageTap::await_kept_back() {
 
 void StageTap::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
+    // poll passes over a descriptor that is not there: the listener's on a serial line.
     std::vector<pollfd> watched{{wake_up_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
     for (const auto& pair : pairs_) {
       watched.push_back({pair->daemon.get(), POLLIN, 0});
@@ -127,44 +132,59 @@ void StageTap::accept_one() {
   pairs_.push_back(std::move(pair));
 }
 
-void StageTap::hand_back(Pair& pair) {
+void StageTap::hand_back(Pair& pair) const {
   std::array<std::uint8_t, 4096> bytes{};
-  const ssize_t n = ::recv(pair.stage.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+  const ssize_t n = ::read(pair.stage.get(), bytes.data(), bytes.size());
   pair.is_over = pair.is_over || n == 0;
-  if (n > 0) send_at_once(pair.daemon, std::span(bytes).first(static_cast<std::size_t>(n)));
+  if (n > 0) send(pair.daemon, std::span(bytes).first(static_cast<std::size_t>(n)));
 }
 
 void StageTap::take(Pair& pair) {
   std::array<std::uint8_t, 4096> bytes{};
-  const ssize_t n = ::recv(pair.daemon.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+  const ssize_t n = ::read(pair.daemon.get(), bytes.data(), bytes.size());
   pair.is_over = pair.is_over || n == 0;
   if (n <= 0) return;
   pair.received.insert(pair.received.end(), bytes.begin(), bytes.begin() + n);
   for (;;) {
     const std::span<const std::uint8_t> all(pair.received);
-    if (all.size() < kHead) return;
-    const std::size_t size = kHead + all[4] * 256U + all[5];
-    if (all.size() < size) return;
-    hand_on(pair, all.first(size));
-    pair.received.erase(pair.received.begin(), pair.received.begin() + static_cast<std::ptrdiff_t>(size));
+    const auto size = request_length(all);
+    if (!size || all.size() < *size) return;
+    hand_on(pair, all.first(*size));
+    pair.received.erase(pair.received.begin(), pair.received.begin() + static_cast<std::ptrdiff_t>(*size));
+  }
+}
+
+std::optional<std::size_t> StageTap::request_length(std::span<const std::uint8_t> begin) const {
+  if (line_) return sim::rtu_request_length(begin);
+  if (begin.size() < kHead) return std::nullopt;
+  return kHead + begin[4] * 256U + begin[5];
+}
+
+void StageTap::send(const sim::FileDescriptor& to, std::span<const std::uint8_t> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t n = line_ ? ::write(to.get(), bytes.data(), bytes.size())
+                            : ::send(to.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (n <= 0) return;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
   }
 }
 
 void StageTap::hand_on(Pair& pair, std::span<const std::uint8_t> frame) {
   static const stage::RegisterMap map = stage::own_register_map();
+  const auto pdu = frame.subspan(line_ ? 1 : kHead + 1);
   {
     const std::lock_guard lock(mutex_);
-    const auto at = written_at(frame);
+    const auto at = written_at(pdu);
     if (at == map.halt_block().first && !halt_) halt_ = clock_.now();
     if (at == map.motion_block().first && halt_) ++motions_since_halt_;
-    if (keeps_back_ && reads(frame)) {
+    if (keeps_back_ && reads(pdu)) {
       ++kept_back_;
       came_.notify_all();
       return;
     }
     came_.notify_all();
   }
-  send_at_once(pair.stage, frame);
+  send(pair.stage, frame);
 }
 
 }  // namespace gonio::bench

@@ -6,21 +6,25 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "base/clock.h"
+#include "sim/wires/serial_pty.h"
 #include "sim/wires/sockets.h"
 
 namespace gonio::bench {
 
-/// Between a daemon and its stage on Modbus TCP: hands every byte on, notes when a halt and when a motion passes whole,
-/// and can keep back what the engine's own connection asks, so that it waits out its timeout.
+/// Between a daemon and its stage, on Modbus TCP or on a serial line: hands every byte on, notes when a halt and when a
+/// motion passes whole, and can keep back what the engine asks, so that its link waits out its timeout.
 /// Threads: one of its own; calls from any.
 class StageTap {
  public:
   /// Listens on a free port of 127.0.0.1 and connects to `stage_port` there for each who comes.
   explicit StageTap(std::uint16_t stage_port);
+  /// Makes a pseudo terminal that `line` leads to, and opens the stage's own.
+  StageTap(const std::string& line, const std::string& stage_line);
   StageTap(const StageTap&) = delete;
   StageTap& operator=(const StageTap&) = delete;
   ~StageTap();
@@ -31,7 +35,7 @@ class StageTap {
   [[nodiscard]] std::optional<Instant> halt_came();
   /// Motion commands that came after the halt that was awaited.
   [[nodiscard]] long motions_since_halt() const;
-  /// Requests of a connection that reads are dropped from now on, or handed on again.
+  /// Requests that read are dropped from now on, or handed on again.
   void keep_back(bool on);
   /// Until a request has been dropped, at most 10 s; false when none was.
   [[nodiscard]] bool await_kept_back();
@@ -45,12 +49,15 @@ class StageTap {
   };
   void run(const std::stop_token& stop);
   void accept_one();
-  static void hand_back(Pair& pair);
+  void hand_back(Pair& pair) const;
   void take(Pair& pair);
   void hand_on(Pair& pair, std::span<const std::uint8_t> frame);
+  [[nodiscard]] std::optional<std::size_t> request_length(std::span<const std::uint8_t> begin) const;
+  void send(const sim::FileDescriptor& to, std::span<const std::uint8_t> bytes) const;
 
-  std::uint16_t stage_port_;
-  sim::FileDescriptor listener_;
+  std::uint16_t stage_port_ = 0;
+  sim::FileDescriptor listener_;        ///< on TCP
+  std::optional<sim::SerialPty> line_;  ///< on a serial line: there the one pair is always there
   sim::FileDescriptor wake_up_;
   std::vector<std::unique_ptr<Pair>> pairs_;
   SystemClock clock_;

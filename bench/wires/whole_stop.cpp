@@ -1,7 +1,8 @@
-// STOP of a whole goniod: from the last byte of the HTTP request to the whole halt frame at the stage, in every state,
-// alone and with 200 clients on the API; and whether anything that was decided before moves anything after. Between
-// goniod and goniosim stands a tap that notes when frames pass. The limit is 50 ms in every state. Ends with 1 where a
-// stop is beyond it or something moves. Usage: bench_stop_whole [STOPS A STATE]
+// STOP of a whole goniod: from the last byte of the HTTP request to the whole halt frame at the stage, on Modbus TCP
+// and on a serial line at 115200 baud, in every state, alone and with 200 clients on the API; and whether anything that
+// was decided before moves anything after. Between goniod and goniosim stands a tap that notes when frames pass. The
+// limit is 50 ms in every state. Ends with 1 where a stop is beyond it or something moves. Usage: bench_stop_whole
+// [STOPS A STATE]
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <netinet/in.h>
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -37,9 +39,13 @@ constexpr std::chrono::seconds kMotionDeadline{2};
 constexpr int kEventClients = 100;
 constexpr int kStatusClients = 100;
 
+constexpr double kBaud = 115200.0;  // as goniosim's line
+// A pseudo terminal hands bytes on at once; on a line the frame's 13 bytes take their time.
+constexpr double kSerialFrameMs = 13 * 11 * 1e3 / kBaud;
+
 // Long moves, exposures of an eighth of a second: each state lasts longer than it takes to find out about it. Items
 // that fail because their link was kept back are tried again, so that the plan lasts.
-const test::SceneOptions kScene{.time_scale = 4.0};
+constexpr double kTimeScale = 4.0;
 const test::PlanOptions kPlan{.theta_i_deg = "[10, 70]",
                               .theta_r_deg = "[0, 50, 20, 70, 30, 60, 10, 40]",
                               .phi_r_deg = "[180, 60, 150, 90]",
@@ -77,16 +83,24 @@ struct Stopped {
 /// One goniod on one goniosim, with a tap between, and what brings it into each state.
 class House {
  public:
-  House() : tap_(stage_port()) {
-    std::string text = test::text_of(bench_.simulator().instrument_file());
-    const std::string port = fmt::format("port = {}\n", stage_port());
-    text.replace(text.find(port), port.size(), fmt::format("port = {}\n", tap_.port()));
-    bench_.use_instrument(bench_.file("instrument.toml", text));
+  /// On `wire`: "tcp" or "rtu".
+  explicit House(const std::string& wire)
+      : bench_({.time_scale = kTimeScale, .stage_wire = wire}), is_serial_(wire == "rtu") {
+    const json ready = json::parse(test::text_of(bench_.simulator().state_folder() + "/ready"));
+    if (is_serial_) {
+      const std::string line = ready.at("stage_line");
+      tap_ = std::make_unique<bench::StageTap>(line + ".tap", line);
+      lead_daemon_to_tap(fmt::format("address = \"{}\"\n", line), fmt::format("address = \"{}.tap\"\n", line));
+    } else {
+      const std::uint16_t port = ready.at("stage_port");
+      tap_ = std::make_unique<bench::StageTap>(port);
+      lead_daemon_to_tap(fmt::format("port = {}\n", port), fmt::format("port = {}\n", tap_->port()));
+    }
     bench_.bring_up_daemon();
   }
 
   test::Bench& bench() { return bench_; }
-  bench::StageTap& tap() { return tap_; }
+  bench::StageTap& tap() { return *tap_; }
 
   Stopped stop() {
     const int fd = connected();
@@ -94,10 +108,10 @@ class House {
         "POST /api/v1/stop HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nContent-Type: application/json\r\nContent-Length: 2\r\n"
         "Connection: close\r\n\r\n{{}}",
         bench_.daemon().port());
-    tap_.expect_halt();
+    tap_->expect_halt();
     const Instant asked = clock_.now();
     (void)::send(fd, request.data(), request.size(), MSG_NOSIGNAL);
-    const auto came = tap_.halt_came();
+    const auto came = tap_->halt_came();
     // The tap has seen the halt before the stage has: what the stage took first was not accepted after it.
     test::SeenStage at_halt;
     const auto is_halted = [&] {
@@ -111,9 +125,9 @@ class House {
     // Ten answers later everything that was under way has had its turn.
     for (int k = 0; k < 10; ++k) (void)doing();
     const long accepted = bench_.simulator().stage().motion_commands - at_halt.motion_commands;
-    return {.ms = in_seconds(*came - asked) * 1e3,
+    return {.ms = in_seconds(*came - asked) * 1e3 + (is_serial_ ? kSerialFrameMs : 0.0),
             .accepted_motions = stands ? accepted : accepted + 1,
-            .sent_motions = tap_.motions_since_halt()};
+            .sent_motions = tap_->motions_since_halt()};
   }
 
   // ---- ways into a state ----
@@ -168,8 +182,13 @@ class House {
   }
 
  private:
-  [[nodiscard]] std::uint16_t stage_port() const {
-    return json::parse(test::text_of(bench_.simulator().state_folder() + "/ready")).at("stage_port");
+  // By the line of instrument.toml that says where the stage is.
+  void lead_daemon_to_tap(const std::string& stage, const std::string& tap) {
+    std::string text = test::text_of(bench_.simulator().instrument_file());
+    const std::size_t at = text.find(stage);
+    if (at == std::string::npos) throw std::runtime_error("instrument.toml does not say: " + stage);
+    text.replace(at, stage.size(), tap);
+    bench_.use_instrument(bench_.file("instrument.toml", text));
   }
   [[nodiscard]] int connected() {
     const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -182,8 +201,9 @@ class House {
     return fd;
   }
 
-  test::Bench bench_{kScene};
-  bench::StageTap tap_;
+  test::Bench bench_;
+  bool is_serial_;
+  std::unique_ptr<bench::StageTap> tap_;
   SystemClock clock_;
   long scan_ = 0;
   std::jthread hand_;
@@ -269,12 +289,14 @@ bool report(const std::string& what, std::vector<Stopped> stops) {
   return holds;
 }
 
-bool run(int stops_a_state) {
-  fmt::print("{:<58} {:>5} {:>8} {:>8} {:>8} {:>6} {:>9}\n", "ms from the request's last byte to the halt at the stage",
+bool run(const std::string& wire, int stops_a_state) {
+  fmt::print("{:<58} {:>5} {:>8} {:>8} {:>8} {:>6} {:>9}\n",
+             wire == "rtu" ? "Modbus RTU: ms from the request's last byte to the halt"
+                           : "Modbus TCP: ms from the request's last byte to the halt",
              "stops", "median", "99 %", "worst", "sent", "accepted");
   bool all_hold = true;
   std::vector<Stopped> all;
-  House house;
+  House house(wire);
   for (const bool is_loaded : {false, true}) {
     std::optional<bench::ApiLoad> load;
     if (is_loaded) load.emplace(house.bench().daemon().port(), kEventClients, kStatusClients);
@@ -300,7 +322,8 @@ bool run(int stops_a_state) {
 int main(int argc, char** argv) {
   const int stops = argc > 1 ? std::max(1, std::atoi(argv[1])) : 20;
   try {
-    return run(stops) ? EXIT_SUCCESS : EXIT_FAILURE;
+    const bool on_tcp = run("tcp", stops);
+    return run("rtu", stops) && on_tcp ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::exception& trouble) {
     fmt::print(stderr, "{}\n", trouble.what());
     return EXIT_FAILURE;
