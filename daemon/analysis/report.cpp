@@ -21,7 +21,7 @@ code, pre { font: 12px/1.4 "DejaVu Sans Mono", monospace; } pre { background: #f
 .note { background: #fff8e1; border-left: 3px solid #e0a800; padding: .3rem .7rem; margin: .3rem 0; }
 .sign { display: flex; gap: 3rem; margin-top: 3rem; } .sign div { flex: 1; border-top: 1px solid #333; padding-top: .2rem; color: #555; }
 @page { size: A4; margin: 16mm 14mm; }
-@media print { body { font-size: 9.5pt; max-width: none; margin: 0; padding: 0; } h2 { break-after: avoid; } figure, tr, .facts, .whole, .sign { break-inside: avoid; }
+@media print { body { font-size: 9.5pt; max-width: none; margin: 0; padding: 0; } h2, h2 + p { break-after: avoid; } figure, tr, .facts, .whole, .sign { break-inside: avoid; }
   thead { display: table-header-group; } pre { background: none; border: 1px solid #ccc; } .note { background: none; } code { font-size: 8pt; } }
 )css";
 

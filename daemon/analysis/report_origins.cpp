@@ -9,6 +9,7 @@
 #include "daemon/analysis/html.h"
 #include "daemon/analysis/report.h"
 #include "daemon/config/instrument.h"
+#include "daemon/store/event_facts.h"
 
 namespace gonio::analysis {
 namespace {
@@ -134,10 +135,15 @@ std::string environment_section(const ReportParts& parts) {
 }
 
 std::string people_section(const ReportParts& parts) {
+  // Visits come by the hundred, and the picture of the course has them.
+  std::vector<daemon::HistoryStep> steps = parts.history.steps;
+  const auto visits =
+      std::erase_if(steps, [](const daemon::HistoryStep& step) { return step.kind.ends_with("-visit"); });
   std::vector<std::vector<std::string>> rows;
-  for (const daemon::HistoryStep& step : parts.history.steps) {
+  for (const daemon::HistoryStep& step : steps) {
     if (rows.size() == kStepsShown) break;
-    rows.push_back({iso8601(step.at), html_text(step.kind), html_text(step.who), code(step.json)});
+    rows.push_back(
+        {iso8601(step.at), html_text(step.kind), html_text(step.who), html_text(daemon::event_facts(step.json))});
   }
   const daemon::ScanInfo& info = parts.scan.info;
   std::string html =
@@ -146,8 +152,9 @@ std::string people_section(const ReportParts& parts) {
                   {"last change", iso8601(info.changed) + ": " + std::string(daemon::scan_state_name(info.state)) +
                                       (info.outcome.empty() ? "" : ", " + html_text(info.outcome))}});
   if (!rows.empty()) html += html_table({"when", "what", "who", ""}, rows);
-  if (parts.history.steps.size() > kStepsShown) html += fmt::format("<p>The first {} steps.</p>\n", kStepsShown);
-  return html + "<p><code>gonioctl events</code></p>\n";
+  if (steps.size() > kStepsShown) html += fmt::format("<p>The first {} of {} steps.</p>\n", kStepsShown, steps.size());
+  if (visits > 0) html += fmt::format("<p>And {} visits: see the course of the scan among the pictures.</p>\n", visits);
+  return html + "<p>All: <code>gonioctl events</code></p>\n";
 }
 
 std::string origins_section(const ReportParts& parts) {

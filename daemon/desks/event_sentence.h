@@ -6,8 +6,7 @@
 
 namespace gonio::daemon {
 
-/// An event as the log has it: "scan 3: hold added by local (hold lamp, owner monitor, reason 0.1 is below 0.2)". Lists
-/// and nested values are left out; the store has them.
+/// An event as the log has it: "scan 3: hold added by local (hold lamp, owner monitor, reason 0.1 is below 0.2)".
 [[nodiscard]] std::string event_sentence(const EventRecord& event);
 
 }  // namespace gonio::daemon

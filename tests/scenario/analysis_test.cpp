@@ -218,6 +218,12 @@ TEST_F(Analysis, AReportStandsAloneAndItsCommandsLeadToRawReadings) {
                               "Environment", "Gaps", "Who and when", "Software and configuration", "Pictures"}) {
     EXPECT_THAT(page, HasSubstr("<h2>" + std::string(section)));
   }
+  // What happened is told in words, and a scan's many visits are in a picture.
+  const std::string people =
+      page.substr(page.find("<h2>Who and when"), page.find("<h2>Software and") - page.find("<h2>Who and when"));
+  EXPECT_THAT(people, HasSubstr("<td>scan-done</td>"));
+  EXPECT_EQ(people.find_first_of("{["), std::string::npos) << people;
+  EXPECT_EQ(people.find("-visit"), std::string::npos) << people;
   // The first command of the page, as its reader would give it.
   const std::string lead = "gonioctl data trace " + scan + " ";
   std::size_t at = page.find(lead);
