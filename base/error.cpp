@@ -13,7 +13,7 @@ constexpr std::string_view kItemKept = "Every accepted point is kept; the item u
 // In the order of the enumerators: `traits` indexes it (held by a static_assert below).
 constexpr std::array kTable{
     ErrorTraits{InvalidInput, "invalid-input", 422, 2, Retry::Never, "The input is not valid", kNothingChanged,
-                "Correct the named field."},
+                "Correct the field or the file that the message names."},
     ErrorTraits{UnknownKey, "unknown-key", 422, 2, Retry::Never, "The input has a key that is not known",
                 kNothingChanged, "Correct the spelling, or remove the key."},
     ErrorTraits{MissingKey, "missing-key", 422, 2, Retry::Never, "The input lacks a key that is needed",
