@@ -73,6 +73,9 @@ constexpr std::array kAltaInputs{AltaInput{"SPHERICAL_TL_PL_TV_PV", 4, false, fr
                                  AltaInput{"CARTESIAN", 6, false, from_cartesian}};
 constexpr std::array<std::string_view, 3> kAltaOutputs{"INV_STERADIAN", "INV_STERADIAN_COSINE_FACTOR", "RGB_COLOR"};
 
+// What says how rows are read.
+constexpr std::array<std::string_view, 5> kRowKeys{"PARAM_IN", "PARAM_OUT", "DIM", "VS", "FORMAT"};
+
 class AltaReader {
  public:
   AltaReader(std::string_view text, const std::string& file) : lines_(text, "ALTA text", file) {}
@@ -98,6 +101,8 @@ class AltaReader {
  private:
   Result<void> read_header_line(std::string_view line) {
     const auto [key, rest] = key_and_rest(line);
+    if (!brdf_.channels.empty() && std::ranges::count(kRowKeys, key) > 0)
+      return failure(lines_.error(std::string(key), "the line stands after a row", "it stands before the first"));
     if (key == "PARAM_IN") return read_input(rest);
     if (key == "PARAM_OUT") return read_output(rest);
     if (key == "DIM") return read_dimensions(rest);

@@ -104,6 +104,17 @@ TEST(AltaFile, SaysWhereABadOneIsBad) {
   EXPECT_THAT(said("#PARAM_OUT ENERGY\n"), HasSubstr("ENERGY"));
   EXPECT_THAT(said(head + "#VS 1 1\n0 0 0 1\n"), HasSubstr("VS"));
   EXPECT_THAT(said(head + "#VS 7\n"), HasSubstr("VS"));
+  for (const std::string line : {"#PARAM_IN CARTESIAN", "#PARAM_OUT RGB_COLOR", "#DIM 6 3", "#VS 2", "#FORMAT text"}) {
+    EXPECT_THAT(said(head + "0 0 0 1\n" + line + "\n0 0 0 1\n"), HasSubstr("bad.alta:4")) << line;
+  }
+}
+
+TEST(AltaFile, OtherRemarksMayStandBetweenRows) {
+  const Result<MeasuredBrdf> read =
+      read_alta("#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n0.1 0.2 0.5 7\n# next ring\n0.1 0.3 0.5 8\n", "x.alta");
+
+  ASSERT_TRUE(read.has_value()) << describe(read.error());
+  EXPECT_EQ(read->points.size(), 2U);
 }
 
 }  // namespace
