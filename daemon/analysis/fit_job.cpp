@@ -211,6 +211,7 @@ Result<Told> quantities_told(const MeasuredScan& scan) {
     if (made) cap = *made;
     options.fitted = fits->best().surface;
     notes.push_back("where nothing was measured stands the fit of " + fits->ranks.front().model);
+    if (!fits->best().fits()) notes.push_back("no model that was tried fits: U of what was not measured is the larger");
   } else {
     notes.push_back("no model for what was not measured: " + describe(fits.error()));
   }

@@ -9,6 +9,11 @@ const FittedParameter* FitResult::find(std::string_view name) const {
   return at == parameters.end() ? nullptr : &*at;
 }
 
+bool FitResult::fits() const {
+  constexpr double kLeast = 1e-3;
+  return p_value >= kLeast;
+}
+
 std::vector<std::string> FitResult::undetermined() const {
   std::vector<std::string> names;
   for (const FittedParameter& p : parameters) {

@@ -65,6 +65,8 @@ struct FitResult {
   reflectance::Surface surface;
 
   [[nodiscard]] const FittedParameter* find(std::string_view name) const;
+  /// Whether chance explains chi2: a p of 0.001 or more. Without a p nothing tells.
+  [[nodiscard]] bool fits() const;
   /// Names of what the data do not determine; empty when all is well.
   [[nodiscard]] std::vector<std::string> undetermined() const;
 };

@@ -31,6 +31,46 @@ Result<reflectance::CapModel::Parameter> cap_parameter(const FitResult& fit, std
       .shifted = *std::move(shifted), .shift = shift, .per_reading = fit.parameters[k].per_reading};
 }
 
+// RMS of reading - fitted over RMS of the fitted, of the readings from `least_theta_r` on.
+double relative_rms(const FitResult& fit, Angle least_theta_r) {
+  double differences = 0.0;
+  double values = 0.0;
+  for (const FitResidual& one : fit.residuals) {
+    if (one.geometry.theta_r < least_theta_r) continue;
+    differences += one.difference.si() * one.difference.si();
+    values += one.fitted.si() * one.fitted.si();
+  }
+  return values > 0.0 ? std::sqrt(differences / values) : 0.0;
+}
+
+// What chance does not explain: chi2 of a true model is its degrees of freedom. The readings farthest from the normal,
+// next to what the arm does not reach, count for themselves where they lie farther off than all.
+double lack_of_fit(const FitResult& fit) {
+  constexpr Angle kRim = degrees(15.0);
+  Angle farthest{};
+  for (const FitResidual& one : fit.residuals) farthest = std::max(farthest, one.geometry.theta_r);
+  const double off = std::max(relative_rms(fit, {}), relative_rms(fit, farthest - kRim));
+  if (fit.has_even_weights || fit.chi2 <= 0.0) return off;
+  return off * std::sqrt(std::max(0.0, 1.0 - static_cast<double>(fit.degrees_of_freedom) / fit.chi2));
+}
+
+// Of models that all fail, Akaike's weights give everything to one: they take what is left for noise, of which each
+// reading has its own. It is a pattern that goes through all of them: readings as good as two, of unknown variance,
+// have a likelihood that goes as 1 / chi2.
+std::vector<double> weights_of(std::span<const FitResult> fits, const std::vector<RankedFit>& ranks) {
+  const FitResult& best = fits[ranks.front().fit];
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (const RankedFit& rank : ranks) {
+    const double chi2 = fits[rank.fit].chi2;
+    const bool is_alike = chi2 <= best.chi2;
+    weights.push_back(best.fits() ? rank.weight : (is_alike ? 1.0 : best.chi2 / chi2));
+    sum += weights.back();
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
 }  // namespace
 
 Result<std::vector<RankedFit>> rank_fits(std::span<const FitResult> fits) {
@@ -72,17 +112,18 @@ Result<reflectance::CapModel> cap_of(std::span<const FitResult> fits) {
   const Result<std::vector<RankedFit>> ranks = rank_fits(fits);
   if (!ranks) return failure(ranks.error());
   const FitResult& best = fits[ranks->front().fit];
-  reflectance::CapModel cap{.surface = best.surface, .parameters = {}, .rivals = {}};
+  reflectance::CapModel cap{
+      .surface = best.surface, .parameters = {}, .rivals = {}, .u_lack_of_fit = lack_of_fit(best)};
   for (std::size_t k = 0; k < best.parameters.size(); ++k) {
     if (best.parameters[k].is_fixed) continue;
     Result<reflectance::CapModel::Parameter> parameter = cap_parameter(best, k);
     if (!parameter) return failure(std::move(parameter).error());
     cap.parameters.push_back(*std::move(parameter));
   }
+  const std::vector<double> weights = weights_of(fits, *ranks);
   for (std::size_t r = 1; r < ranks->size(); ++r) {
     constexpr double kCounts = 1e-6;
-    const RankedFit& rank = (*ranks)[r];
-    if (rank.weight > kCounts) cap.rivals.push_back({.surface = fits[rank.fit].surface, .weight = rank.weight});
+    if (weights[r] > kCounts) cap.rivals.push_back({.surface = fits[(*ranks)[r].fit].surface, .weight = weights[r]});
   }
   return cap;
 }

@@ -31,7 +31,9 @@ struct RankedFit {
                                                         const FitOptions& options = {});
 
 /// The best of the fits as what stands where nothing was measured (measured/cap_model.h), with the dependence of its
-/// numbers on the readings, and the others as its rivals by their weights. Errors: as rank_fits; as FitModel::surface.
+/// numbers on the readings, and the others as its rivals by their weights; where the best does not fit (p < 0.001, or
+/// no p) these go as 1 / chi2. What the fit leaves of the readings beyond their noise is its `u_lack_of_fit`. Errors:
+/// as rank_fits; as FitModel::surface.
 [[nodiscard]] Result<reflectance::CapModel> cap_of(std::span<const FitResult> fits);
 
 }  // namespace gonio::fit

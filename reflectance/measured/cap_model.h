@@ -25,6 +25,9 @@ struct CapModel {
   Surface surface;
   std::vector<Parameter> parameters;
   std::vector<Rival> rivals;
+  /// How far the readings lie from the surface beyond their noise, relative to them, k = 1: of a surface that is not
+  /// quite theirs no more is known where nothing was measured. One sign over all that is modelled.
+  double u_lack_of_fit = 0.0;
 };
 
 }  // namespace gonio::reflectance

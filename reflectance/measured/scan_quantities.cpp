@@ -102,7 +102,7 @@ ScanQuantity ScanQuantities::of(const char* name, const std::vector<PairNode>& f
     if (interpolation_.rival() != nullptr) q.u_interpolation = std::max(q.u_interpolation, between);
     if (!cap_) q.u_modelled = as_rectangle(other.modelled - sum.modelled);
   }
-  if (cap_) q.u_modelled = between_models(*cap_, sum);
+  if (cap_) q.u_modelled = std::hypot(between_models(*cap_, sum), cap_->u_lack_of_fit * sum.modelled);
   // The quadrature is the same for any values: the interpolant alone tells how far its levels are apart.
   const NodeSum finer = bare_node_sum(best, fine);
   const NodeSum coarser = bare_node_sum(best, coarse);

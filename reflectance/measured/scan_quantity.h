@@ -13,7 +13,7 @@ struct ScanQuantity {
   double u_random = 0.0;         ///< of the readings, each with its own error: adds in quadrature
   double u_shared = 0.0;         ///< of the errors that readings share: each added over the readings first
   double u_interpolation = 0.0;  ///< between the readings: what the next best way to interpolate would have said
-  double u_modelled = 0.0;       ///< of the choice of what stands where nothing was measured
+  double u_modelled = 0.0;  ///< of what stands where nothing was measured: the choice of it, and how it fits elsewhere
   double u_quadrature = 0.0;
   double k = 2.0;         ///< coverage factor for 95.45 %
   double expanded = 0.0;  ///< U = k u

@@ -247,6 +247,55 @@ TEST(CapOfFits, GoesOnBeyondTheArmAndMovesWithTheReadings) {
   EXPECT_GT(rho.modelled_share, 0.15);
 }
 
+// Surfaces that are none of the models tried: what stands beyond the arm is wrong by more than noise and fit tell.
+TEST(CapOfFits, OfModelsThatDoNotFitHoldsTheTruthWithinU) {
+  const auto of = [](std::vector<const char*> names) {
+    std::vector<FitModel> models;
+    for (const char* name : names) models.push_back(model(name));
+    return models;
+  };
+  const Surface minnaert = reflectance::surface("minnaert", {{"rho", 0.5}, {"k", 0.3}});
+  const Surface sum = reflectance::SurfaceSum::make({{reflectance::wheat(), 0.8}, {minnaert, 0.6}}).value();
+  const std::vector<FitModel> usual = of({"lambertian", "minnaert", "rpv", "lambertian + ggx"});
+  struct Row {
+    const char* name;
+    Surface truth;
+    std::vector<FitModel> models;
+  };
+  const std::vector<Row> rows{
+      {"wheat", reflectance::wheat(), of({"lambertian", "minnaert", "lambertian + ggx"})},
+      {"Minnaert", minnaert, of({"lambertian", "rpv", "lambertian + ggx"})},
+      {"a sum", sum, usual},
+      {"dark Hapke", reflectance::surface("hapke", {{"omega0", 0.6}}), usual},
+      {"white Hapke", reflectance::surface("hapke", {{"omega0", 0.99}}), usual},
+  };
+  double worst_without = 0.0;
+  double squares = 0.0;
+  int count = 0;
+  for (const Row& row : rows) {
+    for (const double reach_deg : {60.0, 75.0}) {
+      SCOPED_TRACE(testing::Message() << row.name << ", to theta_r " << reach_deg);
+      SimulatedGrid grid{.phi_step = 15.0};
+      if (reach_deg < 75.0) grid.theta_r.pop_back();
+      const MeasuredScan scan = simulated_scan(row.truth, geometries(grid), {}, 1);
+      const std::vector<FitResult> fits = fit_models(scan, row.models).value();
+      const auto quantities = reflectance::ScanQuantities::make(scan, {}, cap_of(fits).value()).value();
+      for (const double theta_i : {0.0, 30.0, 60.0}) {
+        const auto i = reflectance::Direction::from_angles(degrees(theta_i), {});
+        const reflectance::ScanQuantity rho = quantities.rho_dh(i).value();
+        const double off = rho.value - reflectance::rho_dh(row.truth, i).value;
+        EXPECT_LT(std::abs(off), rho.expanded) << theta_i << ": " << rho.value;
+        squares += off * off / (rho.u * rho.u);
+        worst_without =
+            std::max(worst_without, std::abs(off) / std::sqrt(rho.u * rho.u - rho.u_modelled * rho.u_modelled));
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(worst_without, 5.0) << "the rows are no hard ones";
+  EXPECT_GT(std::sqrt(squares / count), 0.4) << "U is too wide";  // 0.65: these errors are no draws of one distribution
+}
+
 TEST(SceneText, WritesAModelWithEveryDigitAndRefusesATable) {
   const std::string text = scene_sample(reflectance::wheat()).value();
   const Surface sum = reflectance::SurfaceSum::make({{reflectance::wheat(), 0.25}, {reflectance::sea(), 2.0}}).value();
