@@ -31,27 +31,13 @@ Result<reflectance::CapModel::Parameter> cap_parameter(const FitResult& fit, std
       .shifted = *std::move(shifted), .shift = shift, .per_reading = fit.parameters[k].per_reading};
 }
 
-// RMS of reading - fitted over RMS of the fitted, of the readings from `least_theta_r` on.
-double relative_rms(const FitResult& fit, Angle least_theta_r) {
-  double differences = 0.0;
-  double values = 0.0;
-  for (const FitResidual& one : fit.residuals) {
-    if (one.geometry.theta_r < least_theta_r) continue;
-    differences += one.difference.si() * one.difference.si();
-    values += one.fitted.si() * one.fitted.si();
-  }
-  return values > 0.0 ? std::sqrt(differences / values) : 0.0;
-}
-
-// What chance does not explain: chi2 of a true model is its degrees of freedom. The readings farthest from the normal,
-// next to what the arm does not reach, count for themselves where they lie farther off than all.
+// RMS of reading - fitted over RMS of the fitted; none where chance explains it.
 double lack_of_fit(const FitResult& fit) {
-  constexpr Angle kRim = degrees(15.0);
-  Angle farthest{};
-  for (const FitResidual& one : fit.residuals) farthest = std::max(farthest, one.geometry.theta_r);
-  const double off = std::max(relative_rms(fit, {}), relative_rms(fit, farthest - kRim));
-  if (fit.has_even_weights || fit.chi2 <= 0.0) return off;
-  return off * std::sqrt(std::max(0.0, 1.0 - static_cast<double>(fit.degrees_of_freedom) / fit.chi2));
+  if (fit.fits()) return 0.0;
+  double values = 0.0;
+  for (const FitResidual& one : fit.residuals) values += one.fitted.si() * one.fitted.si();
+  const double rms_fitted = std::sqrt(values / static_cast<double>(std::max<std::size_t>(1, fit.residuals.size())));
+  return rms_fitted > 0.0 ? fit.rms_difference / rms_fitted : 1.0;
 }
 
 // Of models that all fail, Akaike's weights give everything to one: they take what is left for noise, of which each

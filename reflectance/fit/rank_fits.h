@@ -32,7 +32,7 @@ struct RankedFit {
 
 /// The best of the fits as what stands where nothing was measured (measured/cap_model.h), with the dependence of its
 /// numbers on the readings, and the others as its rivals by their weights; where the best does not fit (p < 0.001, or
-/// no p) these go as 1 / chi2. What the fit leaves of the readings beyond their noise is its `u_lack_of_fit`. Errors:
+/// no p) these go as 1 / chi2. What the fit leaves of the readings is its `u_lack_of_fit` then. Errors:
 /// as rank_fits; as FitModel::surface.
 [[nodiscard]] Result<reflectance::CapModel> cap_of(std::span<const FitResult> fits);
 

@@ -25,8 +25,9 @@ struct CapModel {
   Surface surface;
   std::vector<Parameter> parameters;
   std::vector<Rival> rivals;
-  /// How far the readings lie from the surface beyond their noise, relative to them, k = 1: of a surface that is not
-  /// quite theirs no more is known where nothing was measured. One sign over all that is modelled.
+  /// Of a surface that is not that of the readings: how far they lie from it, relative to it, k = 1. 0 where it holds.
+  /// An integral looks for itself at what lies next to its unmeasured part (cap_rim.h), and takes this where there is
+  /// nothing.
   double u_lack_of_fit = 0.0;
 };
 

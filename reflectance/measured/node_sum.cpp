@@ -1,6 +1,9 @@
 #include "reflectance/measured/node_sum.h"
 
 #include <cmath>
+#include <utility>
+
+#include "reflectance/measured/cap_rim.h"
 
 namespace gonio::reflectance {
 namespace {
@@ -9,6 +12,7 @@ namespace {
 void add_cap(const CapModel& cap, std::span<const PairNode> nodes, NodeSum& sum) {
   std::vector<double> slope(cap.parameters.size(), 0.0);
   sum.rival_modelled.assign(cap.rivals.size(), 0.0);
+  for (const CapModel::Rival& rival : cap.rivals) sum.rival_weight.push_back(rival.weight);
   for (const PairNode& node : nodes) {
     const auto at = [&](const Surface& s) { return node.weight * s.eval(node.pair.i, node.pair.r).si(); };
     const double base = at(cap.surface);
@@ -32,6 +36,8 @@ NodeSum node_sum(const MeasuredScan& scan, const ScanInterpolant& interpolant, c
   sum.weight.assign(scan.points.size(), 0.0);
   std::vector<PairNode> uncovered;
   std::vector<ReadingShare> shares;
+  std::vector<SeenNode> seen;
+  const bool is_doubtful = cap && cap->u_lack_of_fit > 0.0;
   for (const PairNode& node : nodes) {
     shares.clear();
     const bool is_covered = interpolant.shares(node.pair.i, node.pair.r, shares);
@@ -45,8 +51,14 @@ NodeSum node_sum(const MeasuredScan& scan, const ScanInterpolant& interpolant, c
       value += share.weight * scan.points[share.reading].value.si();
     }
     (is_covered ? sum.measured : sum.modelled) += node.weight * value;
+    if (is_doubtful) seen.push_back({.node = node, .term = node.weight * value});
   }
   if (cap) add_cap(*cap, uncovered, sum);
+  if (is_doubtful) {
+    CapDoubt doubt = doubt_of(*cap, seen);
+    sum.u_lack_of_fit = doubt.u_relative * std::abs(sum.modelled);
+    sum.rival_weight = std::move(doubt.rival_weights);
+  }
   return sum;
 }
 

@@ -17,6 +17,8 @@ struct NodeSum {
   double modelled = 0.0;               ///< elsewhere
   std::vector<double> weight;          ///< d value / d reading, of both parts; as many as points of the scan
   std::vector<double> rival_modelled;  ///< `modelled` by each of the cap's rivals
+  std::vector<double> rival_weight;    ///< how much each counts; with that of the cap itself they sum to 1
+  double u_lack_of_fit = 0.0;          ///< of `modelled`, by a cap that is not quite the readings' surface
   [[nodiscard]] double value() const { return measured + modelled; }
 };
 

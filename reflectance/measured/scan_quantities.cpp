@@ -50,15 +50,15 @@ double total(const std::vector<HemisphereNode>& nodes) {
 }
 
 // The variance that the choice among models adds (Burnham and Anderson 2002, eq 4.9).
-double between_models(const CapModel& cap, const NodeSum& sum) {
+double between_models(const NodeSum& sum) {
   double weight = 1.0;
-  for (const CapModel::Rival& rival : cap.rivals) weight -= rival.weight;
+  for (const double of_rival : sum.rival_weight) weight -= of_rival;
   double mean = weight * sum.modelled;
-  for (std::size_t m = 0; m < cap.rivals.size(); ++m) mean += cap.rivals[m].weight * sum.rival_modelled[m];
+  for (std::size_t m = 0; m < sum.rival_weight.size(); ++m) mean += sum.rival_weight[m] * sum.rival_modelled[m];
   double variance = weight * (sum.modelled - mean) * (sum.modelled - mean);
-  for (std::size_t m = 0; m < cap.rivals.size(); ++m) {
+  for (std::size_t m = 0; m < sum.rival_weight.size(); ++m) {
     const double off = sum.rival_modelled[m] - mean;
-    variance += cap.rivals[m].weight * off * off;
+    variance += sum.rival_weight[m] * off * off;
   }
   // About the value that is reported, which is that of the best model and not the mean.
   return std::sqrt(std::max(0.0, variance + (sum.modelled - mean) * (sum.modelled - mean)));
@@ -102,7 +102,7 @@ ScanQuantity ScanQuantities::of(const char* name, const std::vector<PairNode>& f
     if (interpolation_.rival() != nullptr) q.u_interpolation = std::max(q.u_interpolation, between);
     if (!cap_) q.u_modelled = as_rectangle(other.modelled - sum.modelled);
   }
-  if (cap_) q.u_modelled = std::hypot(between_models(*cap_, sum), cap_->u_lack_of_fit * sum.modelled);
+  if (cap_) q.u_modelled = std::hypot(between_models(sum), sum.u_lack_of_fit);
   // The quadrature is the same for any values: the interpolant alone tells how far its levels are apart.
   const NodeSum finer = bare_node_sum(best, fine);
   const NodeSum coarser = bare_node_sum(best, coarse);

@@ -256,6 +256,11 @@ TEST(CapOfFits, OfModelsThatDoNotFitHoldsTheTruthWithinU) {
   };
   const Surface minnaert = reflectance::surface("minnaert", {{"rho", 0.5}, {"k", 0.3}});
   const Surface sum = reflectance::SurfaceSum::make({{reflectance::wheat(), 0.8}, {minnaert, 0.6}}).value();
+  const auto glossy = [](double roughness) {  // facets with another distribution than the fit's
+    const Surface facets = reflectance::surface("beckmann", {{"roughness", roughness}, {"refractive_index", 1.5}});
+    return reflectance::SurfaceSum::make({{reflectance::surface("lambertian", {{"rho", 0.3}}), 1.0}, {facets, 1.0}})
+        .value();
+  };
   const std::vector<FitModel> usual = of({"lambertian", "minnaert", "rpv", "lambertian + ggx"});
   struct Row {
     const char* name;
@@ -268,6 +273,9 @@ TEST(CapOfFits, OfModelsThatDoNotFitHoldsTheTruthWithinU) {
       {"a sum", sum, usual},
       {"dark Hapke", reflectance::surface("hapke", {{"omega0", 0.6}}), usual},
       {"white Hapke", reflectance::surface("hapke", {{"omega0", 0.99}}), usual},
+      {"sharp gloss", glossy(0.06), usual},
+      {"gloss", glossy(0.12), usual},
+      {"dull gloss", glossy(0.5), usual},
   };
   double worst_without = 0.0;
   double squares = 0.0;
@@ -279,12 +287,15 @@ TEST(CapOfFits, OfModelsThatDoNotFitHoldsTheTruthWithinU) {
       if (reach_deg < 75.0) grid.theta_r.pop_back();
       const MeasuredScan scan = simulated_scan(row.truth, geometries(grid), {}, 1);
       const std::vector<FitResult> fits = fit_models(scan, row.models).value();
-      const auto quantities = reflectance::ScanQuantities::make(scan, {}, cap_of(fits).value()).value();
+      const Surface best = fits[rank_fits(fits).value().front().fit].surface;
+      const auto quantities =
+          reflectance::ScanQuantities::make(scan, {.table = {}, .fitted = best}, cap_of(fits).value()).value();
       for (const double theta_i : {0.0, 30.0, 60.0}) {
         const auto i = reflectance::Direction::from_angles(degrees(theta_i), {});
         const reflectance::ScanQuantity rho = quantities.rho_dh(i).value();
         const double off = rho.value - reflectance::rho_dh(row.truth, i).value;
         EXPECT_LT(std::abs(off), rho.expanded) << theta_i << ": " << rho.value;
+        EXPECT_LT(rho.u_modelled, 0.15 * rho.value);
         squares += off * off / (rho.u * rho.u);
         worst_without =
             std::max(worst_without, std::abs(off) / std::sqrt(rho.u * rho.u - rho.u_modelled * rho.u_modelled));
@@ -293,7 +304,8 @@ TEST(CapOfFits, OfModelsThatDoNotFitHoldsTheTruthWithinU) {
     }
   }
   EXPECT_GT(worst_without, 5.0) << "the rows are no hard ones";
-  EXPECT_GT(std::sqrt(squares / count), 0.4) << "U is too wide";  // 0.65: these errors are no draws of one distribution
+  EXPECT_GT(std::sqrt(squares / count), 0.3)
+      << "U is too wide";  // they are no draws of one distribution: some are lucky
 }
 
 TEST(SceneText, WritesAModelWithEveryDigitAndRefusesATable) {
