@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "calibration/dark_history.h"
-#include "calibration/normalised_reading.h"
+#include "calibration/jobs/beam_readings.h"
 
 namespace gonio::calibration {
 
@@ -27,41 +26,6 @@ Error no_beam(double nm, std::string seen, std::string limit) {
           .tried = fmt::format("find the direct beam at {:g} nm", nm),
           .seen = std::move(seen),
           .limit = std::move(limit)};
-}
-
-bool is_straight(const Geometry& planned) {
-  constexpr Angle kWithin = degrees(1e-3);
-  return degrees(180.0) - phase_angle(planned) < kWithin;
-}
-
-struct BeamReading {
-  NormalisedReading read;
-  double u = 0.0;  // of q, random
-  bool is_straight = false;
-  std::pair<std::int64_t, std::int64_t> place;  // planned theta_r and phi_r, in thousandths of a degree
-};
-
-using BeamReadings = std::map<std::int64_t, std::vector<BeamReading>>;  // by wavelength in pm
-
-Result<BeamReadings> readings_of(const ScanReadings& scan, const InstrumentModel& instrument,
-                                 const DarkHistory& darks) {
-  std::map<std::int32_t, PlannedPoint> planned;
-  for (const PlannedPoint& point : scan.points) planned[point.index] = point;
-  const auto thousandths = [](Angle angle) { return std::llround(1e3 * in_degrees(angle)); };
-  BeamReadings readings;
-  for (const RawReading& reading : scan.readings) {
-    if (reading.target != Target::Sample || !reading.point_index) continue;
-    const PlannedPoint& point = planned[*reading.point_index];
-    Result<NormalisedReading> q = normalise(reading, darks, instrument.detector);
-    if (!q) return failure(std::move(q).error());
-    const double u = std::hypot(q->u_noise, q->u_monitor, instrument.lamp.u_reproducibility * q->q);
-    readings[std::llround(in_nanometres(point.wavelength) * 1e3)].push_back(
-        {.read = std::move(*q),
-         .u = u,
-         .is_straight = is_straight(point.geometry),
-         .place = {thousandths(point.geometry.theta_r), thousandths(point.geometry.phi_r)}});
-  }
-  return readings;
 }
 
 struct WeightedMean {
@@ -87,41 +51,11 @@ std::optional<WeightedMean> beam_mean(const std::vector<BeamReading>& readings, 
   return mean;
 }
 
-// Of the weighted mean: what each dark visit's error does to all readings that lean on it, and what the level may have
-// done between two of them.
-double u_of_darks(const std::vector<BeamReading>& readings, double u_mean, double u_drift_dn_per_s) {
-  struct Effect {
-    double of_level = 0.0;
-    double u_dn = 0.0;
-  };
-  std::map<std::pair<ExposureRung, std::int64_t>, Effect> by_visit;
-  double drift = 0.0;
-  for (const BeamReading& one : readings) {
-    const double weight = std::pow(u_mean / one.u, 2);
-    for (const DarkShare& share : one.read.darks) {
-      const DarkLevel& level = share.level;
-      const auto add = [&](const DarkVisit* visit, double part) {
-        if (visit == nullptr) return;
-        Effect& effect = by_visit[{share.rung, visit->visit_id}];
-        effect.of_level += weight * share.dq_dlevel * part;
-        effect.u_dn = visit->u_dn;
-      };
-      add(level.before, 1.0 - level.weight_after);
-      add(level.after, level.weight_after);
-      const double exposure_s = 1e-6 * static_cast<double>(share.rung.exposure_us);
-      drift += weight * share.dq_dlevel * level.drift_widening * u_drift_dn_per_s * exposure_s;
-    }
-  }
-  double variance = drift * drift;
-  for (const auto& [visit, effect] : by_visit) variance += std::pow(effect.of_level * effect.u_dn, 2);
-  return std::sqrt(variance);
-}
-
 // The largest part of q by which a place beside the beam differs from its middle, beyond the noise of both.
 Result<double> beam_unevenness(double nm, const std::vector<BeamReading>& readings, const WeightedMean& middle) {
   double worst = 0.0;
   for (const BeamReading& at : readings) {
-    if (at.is_straight) continue;
+    if (is_straight(at.planned)) continue;
     const auto beside = beam_mean(readings, [&](const BeamReading& one) { return one.place == at.place; });
     const double off = beside->value / middle.value - 1.0;
     const double noise = std::hypot(beside->u, middle.u) / middle.value;
@@ -139,7 +73,7 @@ Result<double> beam_unevenness(double nm, const std::vector<BeamReading>& readin
 
 void put_values(FoundValues& found, const DirectBeam& beam) {
   const auto add = [&](std::string_view what, std::string unit, double value, double u) {
-    found.values.push_back({.name = fmt::format("{}{}_{:.7g}nm", kBeamPrefix, what, in_nanometres(beam.wavelength)),
+    found.values.push_back({.name = fmt::format("{}{}_{}", kBeamPrefix, what, nm_text(beam.wavelength)),
                             .unit = std::move(unit),
                             .value = value});
     found.covariance.push_back(u * u);  // the diagonal: spread out when all are there
@@ -151,13 +85,6 @@ void put_values(FoundValues& found, const DirectBeam& beam) {
   add("dlnq_dt0", "1/s", beam.dlnq_dt0, 0.0);
 }
 
-void spread_diagonal(FoundValues& found) {
-  const std::size_t n = found.values.size();
-  std::vector<double> covariance(n * n, 0.0);
-  for (std::size_t k = 0; k < n; ++k) covariance[k * n + k] = found.covariance[k];
-  found.covariance = std::move(covariance);
-}
-
 struct FoundBeam {
   DirectBeam beam;
   std::string note;
@@ -165,7 +92,7 @@ struct FoundBeam {
 
 Result<FoundBeam> beam_of(double nm, const std::vector<BeamReading>& readings, const InstrumentModel& instrument,
                           const Measured<double>& passed) {
-  const auto middle = beam_mean(readings, [](const BeamReading& one) { return one.is_straight; });
+  const auto middle = beam_mean(readings, [](const BeamReading& one) { return is_straight(one.planned); });
   const auto all = beam_mean(readings, [](const BeamReading&) { return true; });
   if (!middle || !(middle->value > 0.0)) {
     return failure(no_beam(nm, middle ? "no light straight through" : "no reading straight through", "some"));
@@ -175,7 +102,9 @@ Result<FoundBeam> beam_of(double nm, const std::vector<BeamReading>& readings, c
   const double dof = static_cast<double>(readings.size()) - 1.0;
   const double ratio = dof > 0.0 ? all->chi2 / dof : 1.0;
   const double noise = all->u * std::sqrt(std::max(1.0, ratio));
-  const double darks = u_of_darks(readings, all->u, instrument.detector.u_dark_drift_dn_per_s);
+  std::vector<double> weights;
+  for (const BeamReading& one : readings) weights.push_back(std::pow(all->u / one.u, 2));
+  const double darks = u_of_darks(readings, weights, instrument.detector.u_dark_drift_dn_per_s);
   const double sides = *uneven * all->value / std::sqrt(3.0);
   DirectBeam beam{
       .wavelength = nanometres(nm), .q = {all->value, std::hypot(noise, darks, sides)}, .attenuation = passed};
@@ -206,7 +135,7 @@ std::optional<double> nm_of(std::string_view name, std::string_view what) {
 Result<FoundValues> fit_direct_beam(const ScanReadings& scan, const InstrumentModel& instrument,
                                     const std::vector<Attenuator>& attenuators) {
   const DarkHistory darks(scan, instrument.detector);
-  const Result<BeamReadings> readings = readings_of(scan, instrument, darks);
+  const Result<BeamReadings> readings = beam_readings_of(scan, instrument, darks);
   if (!readings) return failure(readings.error());
   FoundValues found;
   for (const auto& [picometres, at_wavelength] : *readings) {
@@ -237,7 +166,7 @@ std::vector<DirectBeam> direct_beams_of(const FoundValues& found) {
     const auto nm = nm_of(found.values[place].name, "q");
     if (!nm) continue;
     const auto part = [&](std::string_view what) -> Measured<double> {
-      const auto at = found.place_of(fmt::format("{}{}_{:.7g}nm", kBeamPrefix, what, *nm));
+      const auto at = found.place_of(fmt::format("{}{}_{}", kBeamPrefix, what, nm_text(nanometres(*nm))));
       return at ? Measured<double>{found.values[*at].value, found.u(*at)} : Measured<double>{};
     };
     DirectBeam beam{.wavelength = nanometres(*nm),

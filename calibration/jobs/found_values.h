@@ -30,4 +30,7 @@ struct FoundValues {
   friend bool operator==(const FoundValues&, const FoundValues&) = default;
 };
 
+/// Values that share nothing: their variances, one each in `covariance`, become the diagonal of the whole.
+void spread_diagonal(FoundValues& found);
+
 }  // namespace gonio::calibration
