@@ -12,6 +12,7 @@
 #include "calibration/jobs/control_chart.h"
 #include "calibration/jobs/direct_beam.h"
 #include "calibration/jobs/linearity_ladder.h"
+#include "calibration/jobs/signature.h"
 #include "daemon/config/instrument.h"
 #include "daemon/results/brdf_means.h"
 #include "daemon/results/map_run.h"
@@ -69,6 +70,8 @@ Result<FoundValues> fitted(const api::PlanCalibration& wanted, const calibration
       return calibration::fit_arm_zeros(readings, stated, {.u_mirror = wanted.u_mirror});
     case api::CalibrationJob::DirectBeam:
       return calibration::fit_direct_beam(readings, stated, attenuators_of(instrument, readings));
+    case api::CalibrationJob::Signature:
+      return calibration::fit_signature(readings, stated);
     case api::CalibrationJob::Transfer:
       return transfer_of(brdf, readings, master);
     case api::CalibrationJob::CheckStandard:

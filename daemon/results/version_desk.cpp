@@ -98,7 +98,7 @@ AskedVersions asked_versions_of(const EventRecord& event) {
 }
 
 bool changes_scans(const std::string& job) {
-  return job != "check-standard" && job != "transfer" && job != "dark-map" && job != "flat-field";
+  return job != "check-standard" && job != "transfer" && job != "dark-map" && job != "flat-field" && job != "signature";
 }
 
 Result<ModelOfVersions> model_with(const std::vector<FoundCalibration>& all, const AskedVersions& asked,

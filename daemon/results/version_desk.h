@@ -37,8 +37,8 @@ struct ModelOfVersions {
 /// The instrument with all that counts of what was found of it. Errors: those of the store and of model_with.
 [[nodiscard]] Result<Instrument> as_known(Instrument instrument, StoreReader& reader);
 
-/// Whether what this job finds can change a scan; a check standard's run and a transfer cannot, nor maps of pixels:
-/// frames are reduced with them as they come, and are gone.
+/// Whether what this job finds can change a scan; a check standard's run, a transfer and a signature cannot, nor maps
+/// of pixels: frames are reduced with them as they come, and are gone.
 [[nodiscard]] bool changes_scans(const std::string& job);
 
 /// Errors: NotFound.

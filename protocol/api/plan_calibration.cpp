@@ -71,25 +71,44 @@ void read_arm_zeros(TomlReader& table, Plan& plan, PlanCalibration& wanted) {
   plan.isotropic = false;  // at the normal each azimuth is a crossing of its own
 }
 
-// Straight through, and beside it on four sides: theta_r and, as far along its circle, phi_r.
-void read_direct_beam(TomlReader& table, Plan& plan) {
+// What both jobs say that look into the source; the detector stands opposite to it, below the surface.
+struct Look {
+  std::vector<Wavelength> wavelengths;
+  double theta_i_deg = 0.0;
+  int repeats = 1;
+  [[nodiscard]] double straight_deg() const { return 180.0 - theta_i_deg; }
+  /// As far along phi_r as an angle at the stage's centre is.
+  [[nodiscard]] double along_phi() const { return 1.0 / std::sin(in_radians(degrees(straight_deg()))); }
+};
+
+Look read_look(TomlReader& table, int repeats) {
   constexpr NumberRange kTheta{.least = 45.0, .most = 89.0, .unit = "deg"};
-  constexpr NumberRange kBeside{.least = 0.01, .most = 5.0, .unit = "deg"};
   constexpr NumberRange kWavelength{.least = 100.0, .most = 20'000.0, .unit = "nm"};
   constexpr int kMostRepeats = 1000;
-  std::vector<Wavelength> wavelengths;
-  for (const double nm : read_values(table, "wavelength_nm", kWavelength)) wavelengths.push_back(nanometres(nm));
-  const double theta_i = table.number("theta_i_deg", kTheta);
+  Look look;
+  for (const double nm : read_values(table, "wavelength_nm", kWavelength)) look.wavelengths.push_back(nanometres(nm));
+  look.theta_i_deg = table.number("theta_i_deg", kTheta);
+  look.repeats = static_cast<int>(table.integer_or("repeats", repeats, 1, kMostRepeats));
+  return look;
+}
+
+PlanPart look_at(const TomlReader& table, const Look& look, std::vector<Angle> theta_r, std::vector<Angle> phi_r) {
+  PlanPart part = crossing(table, {}, look.theta_i_deg, std::move(theta_r), std::move(phi_r));
+  part.wavelengths = look.wavelengths;
+  part.repeats = look.repeats;
+  return part;
+}
+
+// Straight through, and beside it on four sides: theta_r and, as far along its circle, phi_r.
+void read_direct_beam(TomlReader& table, Plan& plan) {
+  constexpr NumberRange kBeside{.least = 0.01, .most = 5.0, .unit = "deg"};
+  const Look look = read_look(table, 3);
   const double beside = table.number_or("beside_deg", 0.1, kBeside);
-  const int repeats = static_cast<int>(table.integer_or("repeats", 3, 1, kMostRepeats));
   if (table.has_failed()) return;
-  const double straight = 180.0 - theta_i;
-  const double along_phi = beside / std::sin(in_radians(degrees(straight)));
+  const double straight = look.straight_deg();
+  const double along_phi = beside * look.along_phi();
   const auto add = [&](double theta_r, double phi_r) {
-    PlanPart part = crossing(table, {}, theta_i, angles(theta_r, {0.0}), angles(phi_r, {0.0}));
-    part.wavelengths = wavelengths;
-    part.repeats = repeats;
-    plan.parts.push_back(std::move(part));
+    plan.parts.push_back(look_at(table, look, angles(theta_r, {0.0}), angles(phi_r, {0.0})));
   };
   add(straight, 180.0);
   for (const double side : {-1.0, 1.0}) {
@@ -97,6 +116,35 @@ void read_direct_beam(TomlReader& table, Plan& plan) {
     add(straight, 180.0 + side * along_phi);
   }
   plan.isotropic = false;  // its four sides are four places
+  plan.reference_mode = ReferenceMode::Absolute;
+}
+
+// The beam crossed along theta_r and, as far along its circle, along phi_r. Both cross in the middle, which is read
+// with the first.
+void read_signature(TomlReader& table, Plan& plan) {
+  constexpr NumberRange kHalf{.least = 0.02, .most = 30.0, .unit = "deg"};
+  constexpr NumberRange kStep{.least = 0.002, .most = 10.0, .unit = "deg"};
+  const Look look = read_look(table, 1);
+  const double half = table.number("half_width_deg", kHalf);
+  const double step = table.number("step_deg", kStep);
+  if (table.has_failed()) return;
+  constexpr double kStepsAtLeast = 4.0;
+  if (step > half / kStepsAtLeast) {
+    table.fail("step_deg", ErrorCode::InvalidInput, fmt::format("{} deg", step),
+               fmt::format("at most a quarter of half_width_deg = {} deg", half));
+  }
+  if (!(look.straight_deg() - half > 90.0)) {
+    table.fail(
+        "half_width_deg", ErrorCode::InvalidInput, fmt::format("from theta_r = {} deg on", look.straight_deg() - half),
+        fmt::format("beyond 90 deg, where an attenuator stands in the beam: below {} deg, or another theta_i_deg",
+                    90.0 - look.theta_i_deg));
+  }
+  if (table.has_failed()) return;
+  std::vector<double> across = offsets(half, step);
+  plan.parts.push_back(look_at(table, look, angles(look.straight_deg(), across), {degrees(180.0)}));
+  across.erase(across.begin() + std::ssize(across) / 2);
+  plan.parts.push_back(look_at(table, look, {degrees(look.straight_deg())}, angles(180.0, across, look.along_phi())));
+  plan.isotropic = false;  // both sides of the plane of incidence
   plan.reference_mode = ReferenceMode::Absolute;
 }
 
@@ -110,15 +158,16 @@ bool read_calibration(TomlReader& root, Plan& plan) {
   if (wanted.job == CalibrationJob::Linearity) wanted.order = static_cast<int>(table->integer_or("order", 2, 1, 3));
   if (wanted.job == CalibrationJob::ArmZeros) read_arm_zeros(*table, plan, wanted);
   if (wanted.job == CalibrationJob::DirectBeam) read_direct_beam(*table, plan);
+  if (wanted.job == CalibrationJob::Signature) read_signature(*table, plan);
   constexpr int kMostFrames = 4096;
   if (makes_maps(wanted.job))
     wanted.frames = static_cast<int>(table->integer_or("frames", wanted.frames, 2, kMostFrames));
   plan.calibration = wanted;
-  return wanted.job == CalibrationJob::ArmZeros || wanted.job == CalibrationJob::DirectBeam;
+  return wanted.job == CalibrationJob::ArmZeros || looks_into_source(wanted.job);
 }
 
 void refuse_targets_beside_a_beam(TomlReader& root, const Plan& plan) {
-  if (!plan.calibration || plan.calibration->job != CalibrationJob::DirectBeam || root.has_failed()) return;
+  if (!plan.calibration || !looks_into_source(plan.calibration->job) || root.has_failed()) return;
   if (plan.reference_mode != ReferenceMode::Absolute) {
     root.table("reference")
         .fail("mode", ErrorCode::InvalidInput, "a direct beam beside a standard", "mode = \"absolute\", or none");

@@ -19,10 +19,11 @@ enum class CalibrationJob : std::uint8_t {
   DirectBeam,
   Transfer,
   DarkMap,
-  FlatField
+  FlatField,
+  Signature
 };
-inline constexpr std::array<std::string_view, 7> kCalibrationJobNames{
-    "linearity", "arm-zeros", "check-standard", "direct-beam", "transfer", "dark-map", "flat-field"};
+inline constexpr std::array<std::string_view, 8> kCalibrationJobNames{
+    "linearity", "arm-zeros", "check-standard", "direct-beam", "transfer", "dark-map", "flat-field", "signature"};
 [[nodiscard]] constexpr std::string_view calibration_job_name(CalibrationJob job) {
   return kCalibrationJobNames[static_cast<std::size_t>(job)];
 }
@@ -30,6 +31,11 @@ inline constexpr std::array<std::string_view, 7> kCalibrationJobNames{
 /// Whether it makes maps of the detector's pixels: its scan keeps sums of frames, pixel by pixel.
 [[nodiscard]] constexpr bool makes_maps(CalibrationJob job) {
   return job == CalibrationJob::DarkMap || job == CalibrationJob::FlatField;
+}
+
+/// Whether the detector looks into the source, with nothing on the stage: its plan's mode is absolute.
+[[nodiscard]] constexpr bool looks_into_source(CalibrationJob job) {
+  return job == CalibrationJob::DirectBeam || job == CalibrationJob::Signature;
 }
 
 /// [calibration] of a plan.
@@ -40,13 +46,13 @@ struct PlanCalibration {
   int frames = 32;  ///< dark-map, flat-field: of each exposure, in each dark visit
 };
 
-/// Reads the section, where there is one, into `plan.calibration`; of arm-zeros and direct-beam also the points, which
-/// are the job's own. A direct beam stands against no standard: its plan's mode becomes absolute.
+/// Reads the section, where there is one, into `plan.calibration`; of arm-zeros, direct-beam and signature also the
+/// points, which are the job's own. A direct beam stands against no standard: its plan's mode becomes absolute.
 /// True when it gave the points: the plan then has no [geometry]. Errors are recorded in the reader.
 [[nodiscard]] bool read_calibration(TomlReader& root, Plan& plan);
 
-/// A direct beam is read without visits of any target: mode and [visits] of its plan say nothing else. Errors are
-/// recorded in the reader.
+/// A job that looks into the source has no visits of any target: mode and [visits] of its plan say nothing else. Errors
+/// are recorded in the reader.
 void refuse_targets_beside_a_beam(TomlReader& root, const Plan& plan);
 
 /// A flat field needs stated exposures and readings of the standard at its own geometries. Errors are recorded in the

@@ -61,6 +61,20 @@ repeats = 4
 standard = "SRT"
 )";
 
+constexpr std::string_view kSignature = R"([scan]
+name = "signature"
+sample = "nothing"
+[calibration]
+job = "signature"
+wavelength_nm = [480, 568]
+theta_i_deg = 80
+half_width_deg = 2.0
+step_deg = 0.25
+repeats = 2
+[reference]
+standard = "SRT"
+)";
+
 std::string changed(std::string_view plan, std::string_view from, std::string_view to) {
   std::string text(plan);
   const std::size_t at = text.find(from);
@@ -180,6 +194,58 @@ TEST(PlanCalibration, ADirectBeamTakesNoTargetBesideIt) {
   EXPECT_EQ(error_of(beam + "[visits]\nreference_s = 60\n").where->field, "visits.reference_s");
   EXPECT_EQ(error_of(beam + "[visits]\ncheck_s = 60\n").where->field, "visits.check_s");
   EXPECT_TRUE(parse_plan(beam + "mode = \"absolute\"\n[visits]\ndark_s = 60\n", "job.toml"));
+}
+
+TEST(PlanCalibration, ASignatureCrossesTheBeamAlongThetaAndAlongPhiAgainstNoStandard) {
+  const auto plan = parse_plan(kSignature, "job.toml");
+
+  ASSERT_TRUE(plan) << describe(plan.error());
+  EXPECT_EQ(plan->calibration->job, CalibrationJob::Signature);
+  EXPECT_EQ(plan->reference_mode, ReferenceMode::Absolute);
+  EXPECT_FALSE(plan->isotropic);
+  ASSERT_EQ(plan->parts.size(), 2U);
+  for (const PlanPart& part : plan->parts) {
+    EXPECT_NEAR(in_degrees(part.theta_i.at(0)), 80.0, 1e-12);
+    EXPECT_EQ(part.wavelengths.size(), 2U);
+    EXPECT_EQ(part.repeats, 2);
+  }
+  const auto& in_plane = std::get<ProductShape>(plan->parts[0].shape);
+  ASSERT_EQ(in_plane.theta_r.size(), 17U);
+  EXPECT_NEAR(in_degrees(in_plane.theta_r.front()), 98.0, 1e-9);
+  EXPECT_NEAR(in_degrees(in_plane.theta_r.back()), 102.0, 1e-9);
+  ASSERT_EQ(in_plane.phi_r.size(), 1U);
+  EXPECT_NEAR(in_degrees(in_plane.phi_r[0]), 180.0, 1e-9);
+  const auto& across = std::get<ProductShape>(plan->parts[1].shape);
+  ASSERT_EQ(across.phi_r.size(), 16U) << "the middle is read with the other crossing";
+  EXPECT_NEAR(in_degrees(across.phi_r.front()), 180.0 - 2.0 / std::sin(in_radians(degrees(100.0))), 1e-8);
+  EXPECT_NEAR(in_degrees(across.theta_r.at(0)), 100.0, 1e-9);
+}
+
+TEST(PlanCalibration, ASignatureSaysWhichFieldIsWrong) {
+  const auto field_of = [](std::string_view from, std::string_view to) {
+    const Error error = error_of(changed(kSignature, from, to));
+    EXPECT_EQ(error.where->file, "job.toml");
+    EXPECT_GT(error.where->line, 0) << describe(error);
+    return error.where->field;
+  };
+
+  EXPECT_EQ(field_of("[480, 568]", "[48]"), "calibration.wavelength_nm");
+  EXPECT_EQ(field_of("theta_i_deg = 80", "theta_i_deg = 30"), "calibration.theta_i_deg");
+  EXPECT_EQ(field_of("half_width_deg = 2.0\n", ""), "calibration.half_width_deg");
+  EXPECT_EQ(field_of("half_width_deg = 2.0", "half_width_deg = 40"), "calibration.half_width_deg");
+  EXPECT_EQ(field_of("half_width_deg = 2.0", "half_width_deg = 10"), "calibration.half_width_deg") << "theta_r = 90";
+  EXPECT_EQ(field_of("step_deg = 0.25\n", ""), "calibration.step_deg");
+  EXPECT_EQ(field_of("step_deg = 0.25", "step_deg = 0.6"), "calibration.step_deg");
+  EXPECT_EQ(field_of("repeats = 2", "repeats = 0"), "calibration.repeats");
+  EXPECT_EQ(field_of("repeats = 2", "beside_deg = 0.1"), "calibration.beside_deg");
+}
+
+TEST(PlanCalibration, ASignatureTakesNoTargetBesideIt) {
+  const std::string signature(kSignature);
+
+  EXPECT_EQ(error_of(signature + "mode = \"anchor\"\n").where->field, "reference.mode");
+  EXPECT_EQ(error_of(signature + "[visits]\nreference_s = 60\n").where->field, "visits.reference_s");
+  EXPECT_TRUE(parse_plan(signature + "[visits]\ndark_s = 60\n", "job.toml"));
 }
 
 TEST(PlanCalibration, NamesTheJobsThatThereAre) {
