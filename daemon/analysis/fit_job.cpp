@@ -107,6 +107,8 @@ std::vector<std::string> rank_notes(const RankedFits& fits) {
                     fit.chi2 / static_cast<double>(std::max<std::size_t>(1, fit.degrees_of_freedom)),
                     fit.agreeing_starts, fit.starts));
   }
+  if (fits.best().p_value && !fits.best().fits())
+    notes.push_back("none of them fits: U of its numbers is what it would be if the best one did");
   for (const std::string& name : fits.best().undetermined()) {
     notes.push_back("the readings do not determine " + name);
   }
@@ -211,7 +213,8 @@ Result<Told> quantities_told(const MeasuredScan& scan) {
     if (made) cap = *made;
     options.fitted = fits->best().surface;
     notes.push_back("where nothing was measured stands the fit of " + fits->ranks.front().model);
-    if (!fits->best().fits()) notes.push_back("no model that was tried fits: U of what was not measured is the larger");
+    if (!fits->best().fits())
+      notes.push_back("none of the models that were tried fits: U of what was not measured is larger for it");
   } else {
     notes.push_back("no model for what was not measured: " + describe(fits.error()));
   }

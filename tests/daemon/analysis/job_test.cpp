@@ -21,6 +21,7 @@ using formats::BrdfPoint;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr double kRadian = std::numbers::pi / 180.0;
 
@@ -218,6 +219,30 @@ TEST_F(Jobs, AForeignFileIsConvertedAndDescribed) {
       std::ranges::find_if(described->facts, [](const auto& fact) { return fact.name.starts_with("rho_dh(30"); });
   ASSERT_NE(rho, described->facts.end());
   EXPECT_NEAR(rho->value, 0.1 * std::numbers::pi, 1e-3) << "pi f of a Lambertian, the cap beyond 75 deg held";
+}
+
+TEST_F(Jobs, ModelsThatDoNotFitAreSaidToAndCountForLessBeyondTheReadings) {
+  const test::StoredValues matte(grid(), [](const Geometry&) { return 0.1; });
+  const test::StoredValues woven(grid(), [](const Geometry& g) { return 0.1 + 0.05 * std::cos(4.0 * g.phi_r.si()); });
+  const auto u_of_albedo = [](const api::AnalysisReport& told) {
+    const auto found =
+        std::ranges::find_if(told.facts, [](const auto& fact) { return fact.name.starts_with("bond_albedo"); });
+    return found == told.facts.end() ? 0.0 : found->expanded_u.value_or(0.0) / found->value;
+  };
+
+  const auto fit = run(woven.file(), {.kind = "fit", .scan = woven.id()});
+  const auto quantities = run(woven.file(), {.kind = "quantities", .scan = woven.id()});
+  const auto simple_fit = run(matte.file(), {.kind = "fit", .scan = matte.id()});
+  const auto simple = run(matte.file(), {.kind = "quantities", .scan = matte.id()});
+
+  ASSERT_TRUE(fit) << describe(fit.error());
+  ASSERT_TRUE(quantities) << describe(quantities.error());
+  ASSERT_TRUE(simple_fit && simple);
+  EXPECT_THAT(fit->notes, Contains(HasSubstr("none of them fits")));
+  EXPECT_THAT(simple_fit->notes, Not(Contains(HasSubstr("none of them fits"))));
+  EXPECT_THAT(quantities->notes, Contains(HasSubstr("none of the models that were tried fits")));
+  EXPECT_THAT(simple->notes, Not(Contains(HasSubstr("none of the models"))));
+  EXPECT_GT(u_of_albedo(*quantities), 2.0 * u_of_albedo(*simple));
 }
 
 TEST_F(Jobs, BadFilesHaveTheirWordAndLeaveNothing) {
